@@ -1,0 +1,107 @@
+#include "base/file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.h"
+
+namespace remomask {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string errno_text() { return std::strerror(errno); }
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+void sync_path(const std::string& path, int flags) {
+  Descriptor descriptor(::open(path.c_str(), flags));
+  if (descriptor.get() >= 0) ::fsync(descriptor.get());
+}
+
+}  // namespace
+
+std::string read_file(const std::string& path) {
+  Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (descriptor.get() < 0) throw FileError(path, 0, "cannot open: " + errno_text());
+  struct stat status {};
+  if (::fstat(descriptor.get(), &status) != 0 || S_ISDIR(status.st_mode)) {
+    throw FileError(path, 0, "is not a readable file");
+  }
+  std::string content(static_cast<size_t>(status.st_size), '\0');
+  size_t done = 0;
+  while (true) {
+    if (done == content.size()) content.resize(done + (done == 0 ? 4096 : 1));
+    const ssize_t count = ::read(descriptor.get(), content.data() + done, content.size() - done);
+    if (count < 0) {
+      if (errno == EINTR) continue;
+      throw FileError(path, 0, "cannot read: " + errno_text());
+    }
+    if (count == 0) break;
+    done += static_cast<size_t>(count);
+  }
+  content.resize(done);
+  return content;
+}
+
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+  const fs::path parent = fs::path(path_).parent_path();
+  if (!parent.empty() && !fs::is_directory(parent)) {
+    throw FileError(path_, 0, "the folder does not exist; create it or choose another output");
+  }
+  temporary_ = path_ + ".tmp-" + std::to_string(::getpid());
+}
+
+AtomicFile::~AtomicFile() {
+  if (!committed_) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::commit() {
+  sync_path(temporary_, O_RDONLY);
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    throw FileError(path_, 0, "cannot replace: " + errno_text());
+  }
+  committed_ = true;
+  const fs::path parent = fs::path(path_).parent_path();
+  sync_path(parent.empty() ? "." : parent.string(), O_RDONLY | O_DIRECTORY);
+}
+
+void write_file_atomically(const std::string& path, std::string_view content) {
+  AtomicFile file(path);
+  {
+    Descriptor descriptor(::open(file.temporary_path().c_str(),
+                                 O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+    if (descriptor.get() < 0) throw FileError(path, 0, "cannot write: " + errno_text());
+    size_t done = 0;
+    while (done < content.size()) {
+      const ssize_t count =
+          ::write(descriptor.get(), content.data() + done, content.size() - done);
+      if (count < 0) {
+        if (errno == EINTR) continue;
+        throw FileError(path, 0, "cannot write: " + errno_text() + "; the old file was kept");
+      }
+      done += static_cast<size_t>(count);
+    }
+  }
+  file.commit();
+}
+
+}  // namespace remomask
