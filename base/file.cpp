@@ -87,13 +87,12 @@ void AtomicFile::commit() {
 void write_file_atomically(const std::string& path, std::string_view content) {
   AtomicFile file(path);
   {
-    Descriptor descriptor(::open(file.temporary_path().c_str(),
-                                 O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+    Descriptor descriptor(
+        ::open(file.temporary_path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
     if (descriptor.get() < 0) throw FileError(path, 0, "cannot write: " + errno_text());
     size_t done = 0;
     while (done < content.size()) {
-      const ssize_t count =
-          ::write(descriptor.get(), content.data() + done, content.size() - done);
+      const ssize_t count = ::write(descriptor.get(), content.data() + done, content.size() - done);
       if (count < 0) {
         if (errno == EINTR) continue;
         throw FileError(path, 0, "cannot write: " + errno_text() + "; the old file was kept");

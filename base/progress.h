@@ -9,10 +9,10 @@ namespace remomask {
 /// What long work tells its caller. Libraries never print: the program turns
 /// this into a bar or plain lines.
 struct Progress {
-  std::string stage;       ///< for example "import bandai2" or "train tokenizer"
-  double done = 0;         ///< in units of `total`
-  double total = 0;        ///< 0 when unknown
-  std::string detail;      ///< figures of the moment, for example "loss 0.41"
+  std::string stage;   ///< for example "import bandai2" or "train tokenizer"
+  double done = 0;     ///< in units of `total`
+  double total = 0;    ///< 0 when unknown
+  std::string detail;  ///< figures of the moment, for example "loss 0.41"
 };
 
 using ProgressFunction = std::function<void(const Progress&)>;

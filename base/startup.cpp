@@ -71,6 +71,6 @@ static void choose_settings(int, char** arguments, char** environment) {
   execve("/proc/self/exe", arguments, changed);
 }
 
-__attribute__((section(".preinit_array"), used)) static void (*run_first)(int, char**, char**) =
-    choose_settings;
+__attribute__((section(".preinit_array"), used)) static void (*run_first)(int, char**,
+                                                                          char**) = choose_settings;
 }

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "nn/safetensors.h"
+
+namespace torch::nn {
+class Module;
+}
+
+namespace remomask {
+
+/// One trained network inside a model file.
+struct ModelStage {
+  std::string kind;       ///< "text", "retriever", "tokenizer", "masked" or "residual"
+  nlohmann::json config;  ///< everything needed to build it again (preset, sizes, statistics' mode)
+  TensorMap tensors;
+};
+
+/// Several stages in one safetensors file: tensors are named "kind/name", the
+/// configs are in the metadata. `half`: store floating tensors as float16.
+void save_model(const std::string& path, const std::vector<ModelStage>& stages, bool half = false);
+
+/// All stages of a model file by kind. Throws FileError when the file is not a
+/// remomask model or was made by a newer version.
+std::map<std::string, ModelStage> load_model(const std::string& path);
+
+/// One stage; throws FileError that names what the file does hold.
+ModelStage load_stage(const std::string& path, const std::string& kind);
+
+/// Identity of the weights and the config.
+std::string stage_hash(const ModelStage& stage);
+
+/// Parameters and buffers of a module by name (copies).
+TensorMap module_tensors(const torch::nn::Module& module);
+
+/// Sets every parameter and buffer; throws Error when a tensor is missing, too
+/// many, or of another shape: nothing is loaded silently.
+void load_module_tensors(torch::nn::Module& module, const TensorMap& tensors,
+                         const std::string& origin);
+
+}  // namespace remomask
