@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,19 +15,19 @@ namespace remomask {
 /// One motion of at most 200 frames. Long files become several clips that
 /// overlap, with the same `source_file`.
 struct Clip {
-  int64_t id = 0;              ///< given by the database
-  std::string name;            ///< unique, for example "01_01#2"
-  std::string source;          ///< data set, for example "bandai2"
-  std::string source_file;     ///< file stem it was cut from
-  int start_frame = 0;         ///< of this window in the source at 20 fps
-  std::string split;           ///< "train", "val", "test" or "none"
+  int64_t id = 0;           ///< given by the database
+  std::string name;         ///< unique, for example "01_01#2"
+  std::string source;       ///< data set, for example "bandai2"
+  std::string source_file;  ///< file stem it was cut from
+  int start_frame = 0;      ///< of this window in the source at 20 fps
+  std::string split;        ///< "train", "val", "test" or "none"
   std::string licence;
-  std::string content_hash;    ///< of the canonical positions; unique
-  std::string group;           ///< clips of one group are the same motion: windows of a
-                               ///< file, mirror twins, the trial in another skeleton
-  bool mirrored = false;       ///< a stored mirror copy (HumanML3D "M...")
+  std::string content_hash;  ///< of the canonical positions; unique
+  std::string group;         ///< clips of one group are the same motion: windows of a
+                             ///< file, mirror twins, the trial in another skeleton
+  bool mirrored = false;     ///< a stored mirror copy (HumanML3D "M...")
   std::string skeleton = "humanml3d";
-  int frames = 0;              ///< positions, 20 fps
+  int frames = 0;  ///< positions, 20 fps
   std::vector<std::string> captions;
   nlohmann::json labels = nlohmann::json::object();
 };
@@ -67,6 +67,9 @@ class Database {
   /// Stores a clip and its motion, returns its id. Throws Error for a name or
   /// content that is already there.
   int64_t add_clip(const Clip& clip, const Motion& motion);
+  /// Removes all clips cut from one file, with their captions, motions and
+  /// embeddings; returns how many.
+  int remove_clips(const std::string& source, const std::string& source_file);
   std::optional<int64_t> find_name(const std::string& name) const;
   std::optional<int64_t> find_content(const std::string& content_hash) const;
 
@@ -76,12 +79,14 @@ class Database {
   Clip clip(int64_t id) const;
   Motion motion(int64_t id) const;
 
-  /// Notes of one import, so that it can go on and be repeated: key is the
-  /// source file and its size and time.
+  /// Notes of one import, so that it can go on and be repeated: the fingerprint
+  /// says which content of the file, imported how, is stored.
   bool file_is_imported(const std::string& source, const std::string& file,
                         const std::string& fingerprint) const;
   void note_imported_file(const std::string& source, const std::string& file,
                           const std::string& fingerprint, const std::string& outcome);
+  /// File -> fingerprint of all notes of one source.
+  std::map<std::string, std::string> imported_files(const std::string& source) const;
 
   /// Replaces all vectors of `retriever_hash`.
   void store_embeddings(const std::string& retriever_hash,

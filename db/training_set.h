@@ -11,15 +11,15 @@ namespace remomask {
 
 /// A clip as the networks see it.
 struct TrainingClip {
-  int64_t clip_id = 0;   ///< of the database; a mirror twin made here has the id of its original
-  std::string name;      ///< "M" + name for a twin made here
+  int64_t clip_id = 0;  ///< of the database; a mirror twin made here has the id of its original
+  std::string name;     ///< "M" + name for a twin made here
   bool mirrored = false;
   std::string split;
-  int group = 0;         ///< equal for clips that are the same motion (see Clip::group)
-  Features features;     ///< as many rows as the clip has frames (at most 200)
+  int group = 0;      ///< equal for clips that are the same motion (see Clip::group)
+  Features features;  ///< as many rows as the clip has frames (at most 200)
   std::vector<std::string> captions;  ///< mirrored for a twin
-  std::string content;   ///< label "content" or first action; "" when unknown
-  std::string unseen;    ///< "take", "pair" or "" (test clips of the data pack)
+  std::string content;                ///< label "content" or first action; "" when unknown
+  std::string unseen;                 ///< "take", "pair" or "" (test clips of the data pack)
 };
 
 struct TrainingSetOptions {
@@ -27,7 +27,7 @@ struct TrainingSetOptions {
   FeatureMode mode = FeatureMode::fixed;
   bool add_mirrored = true;  ///< twins for clips whose mirror is not stored
   int min_frames = 20;
-  int max_frames = 196;      ///< longer clips are cut at the end
+  int max_frames = 196;  ///< longer clips are cut at the end
 };
 
 /// Loads clips and computes their features. Deterministic order (by id, twin

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace remomask {
+
+enum class SqliteMode { read_only, read_write, create };
+
+/// One connection. Every failure becomes an Error that names the file, what
+/// SQLite says, and what to do about it.
+class SqliteConnection {
+ public:
+  SqliteConnection(std::string path, SqliteMode mode);
+  ~SqliteConnection();
+  SqliteConnection(const SqliteConnection&) = delete;
+  SqliteConnection& operator=(const SqliteConnection&) = delete;
+
+  const std::string& path() const { return path_; }
+  void execute(const char* sql) const;
+  int64_t integer(const char* sql) const;
+  int64_t last_insert_id() const { return sqlite3_last_insert_rowid(handle_); }
+  /// Rows that the last statement inserted, changed or deleted.
+  int64_t changes() const { return sqlite3_changes64(handle_); }
+  bool in_transaction() const { return sqlite3_get_autocommit(handle_) == 0; }
+  [[noreturn]] void fail() const;
+  sqlite3* handle() const { return handle_; }
+
+ private:
+  void open(const std::string& uri, int flags);
+  void close();
+
+  std::string path_;
+  sqlite3* handle_ = nullptr;
+};
+
+/// One prepared statement. Parameters count from 1, columns from 0, as in SQLite.
+class SqliteStatement {
+ public:
+  SqliteStatement(const SqliteConnection& connection, const char* sql);
+  ~SqliteStatement() { sqlite3_finalize(statement_); }
+  SqliteStatement(const SqliteStatement&) = delete;
+  SqliteStatement& operator=(const SqliteStatement&) = delete;
+
+  SqliteStatement& bind(int parameter, int64_t value);
+  SqliteStatement& bind(int parameter, std::string_view value);
+  SqliteStatement& bind(int parameter, std::span<const float> values);
+  /// True when there is a row.
+  bool step();
+  /// For statements without rows; the statement can be bound and run again.
+  void run();
+  /// Ready to be bound and stepped again.
+  void reset() { sqlite3_reset(statement_); }
+
+  int64_t integer(int column) const { return sqlite3_column_int64(statement_, column); }
+  std::string text(int column) const;
+  /// Throws Error when the blob is not whole floats.
+  std::vector<float> floats(int column) const;
+
+ private:
+  void check(int code) const;
+
+  const SqliteConnection& connection_;
+  sqlite3_stmt* statement_ = nullptr;
+};
+
+/// Everything up to commit() is stored together or not at all; inside a running
+/// transaction it is a savepoint of it.
+class SqliteScope {
+ public:
+  explicit SqliteScope(const SqliteConnection& connection);
+  ~SqliteScope();
+  SqliteScope(const SqliteScope&) = delete;
+  SqliteScope& operator=(const SqliteScope&) = delete;
+  void commit();
+
+ private:
+  const SqliteConnection& connection_;
+  bool nested_, done_ = false;
+};
+
+}  // namespace remomask
