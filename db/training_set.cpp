@@ -1,0 +1,150 @@
+#include "db/training_set.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "base/machine.h"
+#include "motion/canonical.h"
+#include "motion/caption_mirror.h"
+
+namespace remomask {
+
+namespace {
+
+const Skeleton& skeleton_named(const std::string& name, const std::string& clip) {
+  if (name == humanml_skeleton().name) return humanml_skeleton();
+  if (name == kit_skeleton().name) return kit_skeleton();
+  throw Error("clip '" + clip + "' has the unknown skeleton '" + name +
+              "'; it was stored by another program, remove it");
+}
+
+std::string label_text(const nlohmann::json& labels, const char* key) {
+  const auto label = labels.find(key);
+  return label != labels.end() && label->is_string() ? label->get<std::string>() : std::string();
+}
+
+std::string content_of_labels(const nlohmann::json& labels) {
+  const std::string content = label_text(labels, "content");
+  if (!content.empty()) return content;
+  const auto actions = labels.find("actions");
+  if (actions == labels.end() || !actions->is_array() || actions->empty()) return "";
+  return actions->front().is_string() ? actions->front().get<std::string>() : "";
+}
+
+std::string mirror_name(const Clip& clip) {
+  return clip.mirrored && clip.name.starts_with('M') ? clip.name.substr(1) : "M" + clip.name;
+}
+
+/// A clip on its way to features.
+struct LoadedClip {
+  Motion motion;
+  size_t first = 0;  ///< place of the clip in the result; a twin comes next
+  bool with_twin = false;
+};
+
+void fill_features(const LoadedClip& loaded, const Skeleton& skeleton, FeatureMode mode,
+                   std::vector<TrainingClip>& result) {
+  TrainingClip& clip = result[loaded.first];
+  try {
+    clip.features = extract_features_all_frames(loaded.motion, skeleton, mode);
+    if (loaded.with_twin) {
+      result[loaded.first + 1].features =
+          extract_features_all_frames(mirror_motion(loaded.motion, skeleton), skeleton, mode);
+    }
+  } catch (const Error& error) {
+    throw Error("clip '" + clip.name + "': " + error.what());
+  }
+}
+
+TrainingClip mirror_twin(const TrainingClip& original, const std::string& name) {
+  TrainingClip twin = original;
+  twin.name = name;
+  twin.mirrored = !original.mirrored;
+  for (std::string& caption : twin.captions) caption = mirror_caption(caption);
+  // "walk-turn-left" becomes "walk-turn-right".
+  twin.content = mirror_caption(original.content);
+  return twin;
+}
+
+}  // namespace
+
+std::vector<TrainingClip> load_training_set(const Database& database,
+                                            const TrainingSetOptions& options) {
+  if (options.min_frames < 2 || options.max_frames < options.min_frames) {
+    throw Error("min_frames must be at least 2, and max_frames not below it");
+  }
+  const std::vector<Clip> clips = database.clips();
+  std::set<std::string> names;
+  for (const Clip& clip : clips) names.insert(clip.name);
+
+  std::vector<TrainingClip> result;
+  std::vector<LoadedClip> loaded;
+  const Skeleton* skeleton = nullptr;
+  std::string skeleton_clip;
+  // Numbered over all clips, so that sets of different splits agree.
+  std::unordered_map<std::string, int> groups;
+  for (const Clip& clip : clips) {
+    const int group = groups.emplace(clip.group, static_cast<int>(groups.size())).first->second;
+    const bool wanted =
+        std::find(options.splits.begin(), options.splits.end(), clip.split) != options.splits.end();
+    if (!wanted || clip.frames < options.min_frames) continue;
+    const Skeleton& own = skeleton_named(clip.skeleton, clip.name);
+    if (skeleton && skeleton != &own) {
+      throw Error(database.path() + ": clips '" + skeleton_clip + "' and '" + clip.name +
+                  "' have different skeletons; keep each skeleton in a database of its own");
+    }
+    skeleton = &own;
+    skeleton_clip = clip.name;
+
+    LoadedClip item;
+    item.motion = database.motion(clip.id);
+    if (item.motion.frames > options.max_frames) {
+      item.motion = slice(item.motion, 0, options.max_frames);
+    }
+    item.first = result.size();
+    TrainingClip training;
+    training.clip_id = clip.id;
+    training.name = clip.name;
+    training.mirrored = clip.mirrored;
+    training.split = clip.split;
+    training.group = group;
+    training.captions = clip.captions;
+    training.content = content_of_labels(clip.labels);
+    training.unseen = label_text(clip.labels, "unseen");
+    const std::string twin_name = mirror_name(clip);
+    item.with_twin = options.add_mirrored && !names.contains(twin_name);
+    result.push_back(training);
+    if (item.with_twin) result.push_back(mirror_twin(training, twin_name));
+    loaded.push_back(std::move(item));
+  }
+
+  std::atomic<size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (size_t i = next++; i < loaded.size(); i = next++) {
+      try {
+        fill_features(loaded[i], *skeleton, options.mode, result);
+      } catch (...) {
+        const std::scoped_lock lock(mutex);
+        if (!failure) failure = std::current_exception();
+        next = loaded.size();
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 1; i < available_cpus(); ++i) threads.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+  return result;
+}
+
+}  // namespace remomask

@@ -1,0 +1,61 @@
+#include "tests/db/db_test_tools.h"
+
+#include <stdlib.h>
+
+#include <cmath>
+
+#include "motion/canonical.h"
+
+namespace remomask {
+
+TestFolder::TestFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "remomask_db_XXXXXX").string();
+  if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
+  path_ = name;
+}
+
+Motion walking_motion(int frames, int seed) {
+  const Skeleton& skeleton = humanml_skeleton();
+  Motion motion(frames, skeleton.joints());
+  const double step = 0.01 + 0.002 * (seed % 7), swing = 0.1 + 0.01 * (seed % 11);
+  for (int frame = 0; frame < frames; ++frame) {
+    const double phase = 0.3 * frame + 0.1 * seed;
+    std::vector<Vec3> joints(static_cast<size_t>(skeleton.joints()), Vec3(0, 1, step * frame));
+    for (int joint = 1; joint < skeleton.joints(); ++joint) {
+      const auto j = static_cast<size_t>(joint);
+      Vec3 direction = skeleton.rest_directions[j];
+      direction.z() += swing * std::sin(phase + joint);
+      joints[j] = joints[static_cast<size_t>(skeleton.parents[j])] +
+                  skeleton.bone_lengths[j] * direction.normalized();
+    }
+    for (int joint = 0; joint < skeleton.joints(); ++joint) {
+      motion.set(frame, joint, joints[static_cast<size_t>(joint)]);
+    }
+  }
+  return canonicalize(motion, skeleton);
+}
+
+Clip named_clip(const std::string& name) {
+  Clip clip;
+  clip.name = name;
+  clip.source = "test";
+  clip.source_file = name;
+  clip.split = "train";
+  clip.licence = "CC0";
+  clip.group = "test/" + name;
+  clip.captions = {"a person walks.", "someone is walking left."};
+  clip.labels = {{"content", "walk"}, {"actions", {"walk", "turn"}}};
+  return clip;
+}
+
+nlohmann::json describe_database(const Database& database) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Clip& clip : database.clips()) {
+    all.push_back({clip.name, clip.source, clip.source_file, clip.start_frame, clip.split,
+                   clip.licence, clip.content_hash, clip.group, clip.mirrored, clip.skeleton,
+                   clip.frames, clip.captions, clip.labels, database.motion(clip.id).positions});
+  }
+  return all;
+}
+
+}  // namespace remomask
