@@ -11,9 +11,10 @@ namespace remomask {
 
 struct MotionFileOptions {
   std::optional<double> metres_per_unit;  ///< default: guessed from the skeleton's size
-  std::optional<char> up_axis;            ///< 'X', 'Y' or 'Z'; default: found from the rest of the body
-  int skip_frames = 0;                    ///< frames to drop at the start (source rate)
-  std::string skeleton_map;               ///< name of a shipped map or path of a map file; empty: found by joint names
+  std::optional<char> up_axis;  ///< 'X', 'Y' or 'Z'; default: found from the rest of the body
+  int skip_frames = 0;          ///< frames to drop at the start (source rate)
+  std::string
+      skeleton_map;  ///< name of a shipped map or path of a map file; empty: found by joint names
 };
 
 struct LoadedMotion {

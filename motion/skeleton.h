@@ -20,10 +20,10 @@ struct Skeleton {
   std::vector<double> bone_lengths;      ///< of the uniform skeleton; 0 for the root
   std::vector<int> mirror;               ///< joint on the other side
   int right_hip, left_hip, right_shoulder, left_shoulder;
-  int leg_upper, leg_lower;              ///< bones whose summed length gives the scale
+  int leg_upper, leg_lower;                ///< bones whose summed length gives the scale
   std::vector<int> left_feet, right_feet;  ///< ankle, toe
-  double contact_threshold;              ///< squared displacement per frame
-  double fps;                            ///< 20 (humanml3d), 12.5 (kit)
+  double contact_threshold;                ///< squared displacement per frame
+  double fps;                              ///< 20 (humanml3d), 12.5 (kit)
 
   int joints() const { return static_cast<int>(parents.size()); }
   int feature_dim() const { return 12 * joints() - 1; }

@@ -1,0 +1,19 @@
+#include "motion/motion.h"
+
+#include "base/error.h"
+
+namespace remomask {
+
+Motion slice(const Motion& motion, int first, int last) {
+  if (first < 0 || last > motion.frames || first > last) {
+    throw Error("frames " + std::to_string(first) + " to " + std::to_string(last) +
+                " lie outside of the motion's " + std::to_string(motion.frames) + " frames");
+  }
+  Motion part(last - first, motion.joints);
+  const size_t row = static_cast<size_t>(motion.joints) * 3;
+  std::copy(motion.positions.begin() + first * row, motion.positions.begin() + last * row,
+            part.positions.begin());
+  return part;
+}
+
+}  // namespace remomask
