@@ -1,0 +1,194 @@
+#include "db/motion_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "motion/motion_file.h"
+#include "motion/skeleton_map.h"
+
+namespace remomask {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_motion_file(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension == ".bvh" || extension == ".npy";
+}
+
+/// Labels of a captions file that say how its motion file must be read.
+class ReadingLabels {
+ public:
+  ReadingLabels(const std::string& captions_path, const CaptionEntry& entry)
+      : path_(captions_path), entry_(entry) {}
+
+  MotionFileOptions options() const {
+    MotionFileOptions options;
+    if (const auto* value = label("skip_frames")) {
+      if (!value->is_number_integer() || value->get<int64_t>() < 0) fail("skip_frames", "a count");
+      options.skip_frames = value->get<int>();
+    }
+    if (const auto* value = label("metres_per_unit")) {
+      if (!value->is_number() || !(value->get<double>() > 0)) {
+        fail("metres_per_unit", "a positive number");
+      }
+      options.metres_per_unit = value->get<double>();
+    }
+    const std::string up_axis = text("up_axis");
+    if (!up_axis.empty()) {
+      if (up_axis != "X" && up_axis != "Y" && up_axis != "Z") fail("up_axis", "X, Y or Z");
+      options.up_axis = up_axis[0];
+    }
+    options.skeleton_map = text("skeleton");
+    return options;
+  }
+
+  std::string text(const char* key) const {
+    const auto* value = label(key);
+    if (!value) return "";
+    if (!value->is_string()) fail(key, "a text");
+    return value->get<std::string>();
+  }
+
+ private:
+  const nlohmann::json* label(const char* key) const {
+    const auto value = entry_.labels.find(key);
+    return value == entry_.labels.end() ? nullptr : &*value;
+  }
+  [[noreturn]] void fail(const std::string& key, const std::string& wanted) const {
+    throw FileError(path_, entry_.line, "label '" + key + "' must be " + wanted);
+  }
+
+  const std::string& path_;
+  const CaptionEntry& entry_;
+};
+
+bool is_shipped_map(const std::string& name) {
+  const auto& maps = shipped_skeleton_maps();
+  return std::any_of(maps.begin(), maps.end(),
+                     [&](const SkeletonMap& map) { return map.name == name; });
+}
+
+/// The name of a map in the labels is a hint: a map that we do not have, or that
+/// does not fit, is no reason to refuse a skeleton that we know by its joints.
+/// (Nor is it ever taken for the path of a file, as a map of the user is.)
+LoadedMotion load_with_hint(const SourceFile& file, MotionFileOptions options,
+                            std::vector<std::string>& warnings) {
+  const std::string hint = options.skeleton_map;
+  if (hint.empty()) return load_motion_file(file.path, options);
+  std::string reason = "there is no such map";
+  if (is_shipped_map(hint)) {
+    try {
+      return load_motion_file(file.path, options);
+    } catch (const Error& error) {
+      reason = error.what();
+    }
+  }
+  options.skeleton_map.clear();
+  LoadedMotion loaded = load_motion_file(file.path, options);
+  warnings.push_back(file.name + ": skeleton '" + hint + "' of its labels was not used (" + reason +
+                     "); read as '" + loaded.skeleton_map + "' by its joint names");
+  return loaded;
+}
+
+}  // namespace
+
+MotionFolder::MotionFolder(const ImportOptions& options) : MotionSource(options) {
+  if (!options_.captions_file.empty()) captions_ = CaptionsFile(options_.captions_file);
+  find_files();
+  match_captions();
+}
+
+void MotionFolder::find_files() {
+  for (const auto& entry : fs::recursive_directory_iterator(options_.folder)) {
+    if (!entry.is_regular_file() || !is_motion_file(entry.path())) continue;
+    files_.push_back({entry.path().lexically_relative(options_.folder).generic_string(),
+                      entry.path().string(), entry.file_size()});
+  }
+  std::sort(files_.begin(), files_.end(),
+            [](const SourceFile& a, const SourceFile& b) { return a.name < b.name; });
+  std::unordered_map<std::string, int> stems;
+  for (const SourceFile& file : files_) ++stems[fs::path(file.name).stem().string()];
+  for (const SourceFile& file : files_) {
+    const fs::path path(file.name);
+    const std::string stem = path.stem().string();
+    names_.push_back(stems[stem] == 1 ? stem : (path.parent_path() / path.stem()).generic_string());
+  }
+}
+
+void MotionFolder::match_captions() {
+  std::set<const CaptionEntry*> used;
+  for (size_t i = 0; i < files_.size(); ++i) {
+    const CaptionEntry* entry = captions_.find(names_[i]);
+    if (!entry) {
+      const fs::path path(files_[i].name);
+      entry = captions_.find((path.parent_path() / path.stem()).generic_string());
+    }
+    described_.push_back(entry);
+    if (entry) {
+      used.insert(entry);
+    } else if (!captions_.path().empty()) {
+      warnings_.push_back(files_[i].name + ": " + captions_.path() +
+                          " does not name it: stored without captions, in no split");
+    }
+  }
+  if (captions_.path().empty() && !files_.empty()) {
+    warnings_.push_back(options_.folder +
+                        ": there is no captions file: all clips are stored without captions, in no "
+                        "split");
+  }
+  for (const CaptionEntry& entry : captions_.entries()) {
+    if (!used.contains(&entry)) {
+      warnings_.push_back(captions_.path() + ":" + std::to_string(entry.line) + ": clip '" +
+                          entry.clip + "' has no motion file");
+    }
+  }
+}
+
+std::string MotionFolder::fingerprint(size_t i) const {
+  std::string parts = content_hash(read_file(files_[i].path)) + options_fingerprint();
+  if (const CaptionEntry* entry = described_[i]) {
+    const nlohmann::json description = {entry->captions, entry->labels, entry->split};
+    parts += description.dump();
+  }
+  return content_hash(parts);
+}
+
+std::vector<PreparedClip> MotionFolder::prepare(size_t i,
+                                                std::vector<std::string>& warnings) const {
+  Clip clip;
+  clip.name = names_[i];
+  clip.source = options_.source;
+  clip.source_file = names_[i];
+  clip.split = "none";
+  clip.licence = options_.licence;
+  clip.group = options_.source + "/" + names_[i];
+  MotionFileOptions reading;
+  if (const CaptionEntry* entry = described_[i]) {
+    const ReadingLabels labels(captions_.path(), *entry);
+    reading = labels.options();
+    clip.captions = entry->captions;
+    clip.labels = entry->labels;
+    clip.split = entry->split;
+    if (const auto licence = labels.text("licence"); !licence.empty()) clip.licence = licence;
+    // Both say that the same performance is there in another skeleton; a trial
+    // keeps its number in every conversion.
+    if (const auto original = labels.text("duplicate_of"); !original.empty()) clip.group = original;
+    if (const auto trial = labels.text("trial"); !trial.empty()) clip.group = "trial/" + trial;
+  }
+  if (!options_.skeleton_map.empty()) reading.skeleton_map = options_.skeleton_map;
+  const LoadedMotion loaded = options_.skeleton_map.empty()
+                                  ? load_with_hint(files_[i], reading, warnings)
+                                  : load_motion_file(files_[i].path, reading);
+  return cut_into_clips(clip, loaded.motion, humanml_skeleton(), window_options());
+}
+
+}  // namespace remomask
