@@ -1,0 +1,105 @@
+#include "nn/model_file.h"
+
+#include <gtest/gtest.h>
+#include <torch/torch.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "nn/device.h"
+
+namespace remomask {
+namespace {
+
+class ModelFileTest : public ::testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(path_); }
+  const std::string path_ = (std::filesystem::temp_directory_path() /
+                             ("remomask_model_" + std::to_string(::getpid()) + ".safetensors"))
+                                .string();
+  ModelStage stage(const std::string& kind) const {
+    return {kind,
+            {{"preset", "tiny"}},
+            {{"weight", torch::randn({3, 4})},
+             {"count", torch::arange(5)},
+             {"flag", torch::ones({1}, torch::kBool)}}};
+  }
+};
+
+TEST_F(ModelFileTest, SaveAndLoadIsExact) {
+  const ModelStage a = stage("tokenizer"), b = stage("masked");
+  save_model(path_, {a, b});
+  const auto loaded = load_model(path_);
+  ASSERT_EQ(loaded.size(), 2u);
+  EXPECT_TRUE(loaded.at("tokenizer").tensors.at("weight").equal(a.tensors.at("weight")));
+  EXPECT_TRUE(loaded.at("masked").tensors.at("count").equal(b.tensors.at("count")));
+  EXPECT_EQ(loaded.at("masked").config, b.config);
+  EXPECT_EQ(stage_hash(loaded.at("masked")), stage_hash(b));
+  EXPECT_NE(stage_hash(a), stage_hash(b));
+}
+
+TEST_F(ModelFileTest, HalfPrecisionRoundsOnce) {
+  const ModelStage a = stage("tokenizer");
+  save_model(path_, {a}, /*half=*/true);
+  const ModelStage once = load_stage(path_, "tokenizer");
+  EXPECT_EQ(once.tensors.at("weight").scalar_type(), torch::kFloat);
+  EXPECT_LT((once.tensors.at("weight") - a.tensors.at("weight")).abs().max().item<float>(), 2e-3);
+  save_model(path_, {once}, true);
+  EXPECT_EQ(stage_hash(load_stage(path_, "tokenizer")), stage_hash(once));
+}
+
+TEST_F(ModelFileTest, MissingStageNamesWhatIsThere) {
+  save_model(path_, {stage("tokenizer")});
+  try {
+    load_stage(path_, "masked");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("it holds: tokenizer"), std::string::npos);
+  }
+}
+
+TEST_F(ModelFileTest, BrokenFilesAreRefused) {
+  save_model(path_, {stage("tokenizer")});
+  const std::string good = read_file(path_);
+  std::string alien(good);
+  alien.replace(alien.find("remomask-model"), 14, "another--model");
+  std::string newer(good);
+  newer.replace(newer.find("\"version\":\"1\""), 13, "\"version\":\"9\"");
+  std::string huge_header(good);
+  huge_header[6] = '\x7f';
+  std::string shape(good);
+  shape.replace(shape.find("[3,4]"), 5, "[9,9]");
+  const std::vector<std::string> broken = {
+      "",          "short", good.substr(0, good.size() - 1), good.substr(0, 40), alien, newer,
+      huge_header, shape,   std::string(1000, '\0')};
+  for (size_t i = 0; i < broken.size(); ++i) {
+    write_file_atomically(path_, broken[i]);
+    EXPECT_THROW(load_model(path_), FileError) << "case " << i;
+  }
+}
+
+TEST_F(ModelFileTest, EveryTensorMustFit) {
+  torch::nn::Linear linear(3, 2);
+  TensorMap tensors = module_tensors(*linear);
+  EXPECT_NO_THROW(load_module_tensors(*linear, tensors, "test"));
+  TensorMap missing = tensors;
+  missing.erase("bias");
+  EXPECT_THROW(load_module_tensors(*linear, missing, "test"), Error);
+  TensorMap extra = tensors;
+  extra["more"] = torch::ones({1});
+  EXPECT_THROW(load_module_tensors(*linear, extra, "test"), Error);
+  TensorMap other = tensors;
+  other["bias"] = torch::ones({5});
+  EXPECT_THROW(load_module_tensors(*linear, other, "test"), Error);
+}
+
+TEST(DeviceTest, UnknownDevicesAreRefused) {
+  EXPECT_TRUE(select_device("cpu").is_cpu());
+  EXPECT_THROW(select_device("quantum"), Error);
+  EXPECT_THROW(set_compute_threads(-1), Error);
+}
+
+}  // namespace
+}  // namespace remomask

@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include "motion/motion_file.h"
+#include "tools/program.h"
+
+namespace remomask {
+
+void register_convert(CLI::App& app, Program& program) {
+  struct Options {
+    std::string input, output, up_axis;
+    double metres_per_unit = 0;
+    MotionFileOptions file;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(app, "convert", "bring a motion file to 22 joints at 20 fps, as BVH or npy",
+                  "remomask convert take.bvh joints.npy");
+  command->add_option("input", options->input, ".bvh or .npy (joints or features)")->required();
+  command->add_option("output", options->output, ".bvh or .npy")->required();
+  command->add_option("--skeleton-map", options->file.skeleton_map, "map name or file");
+  command->add_option("--up-axis", options->up_axis, "X, Y or Z; default: found")
+      ->check(CLI::IsMember({"X", "Y", "Z"}));
+  command->add_option("--metres-per-unit", options->metres_per_unit, "default: found")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--skip-frames", options->file.skip_frames, "frames to drop at the start");
+  command->callback([options, &program] {
+    if (!options->up_axis.empty()) options->file.up_axis = options->up_axis[0];
+    if (options->metres_per_unit > 0) options->file.metres_per_unit = options->metres_per_unit;
+    const LoadedMotion loaded = load_motion_file(options->input, options->file);
+    save_motion_file(options->output, loaded.motion);
+    if (program.json) {
+      return program.print_json({{"output", options->output},
+                                 {"frames", loaded.motion.frames},
+                                 {"skeleton_map", loaded.skeleton_map},
+                                 {"source_fps", loaded.source_fps},
+                                 {"source_frames", loaded.source_frames},
+                                 {"metres_per_unit", loaded.metres_per_unit},
+                                 {"up_axis", std::string(1, loaded.up_axis)}});
+    }
+    fmt::print("{}: {} frames at 20 fps (from {} at {:g} fps, skeleton map {})\n", options->output,
+               loaded.motion.frames, loaded.source_frames, loaded.source_fps,
+               loaded.skeleton_map.empty() ? "none" : loaded.skeleton_map);
+  });
+}
+
+}  // namespace remomask

@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "base/error.h"
+#include "nn/device.h"
+#include "tools/program.h"
+
+namespace remomask {
+namespace {
+
+constexpr int kExitFailed = 1;
+constexpr int kExitUsage = 2;
+
+int run(int argc, char** argv) {
+  Program program;
+  CLI::App app{
+      "remomask: text to human motion. Searches a database of motions by meaning and uses what\n"
+      "it finds to generate a new one."};
+  app.name("remomask");
+  app.set_version_flag("--version", REMOMASK_VERSION);
+  app.add_flag("--json", program.json, "print one JSON document on standard output");
+  app.add_flag("--quiet", program.quiet, "no progress");
+  app.add_option("--threads", program.threads, "CPU threads; 0: all available")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--device", program.device, "cpu, cuda or cuda:N")->capture_default_str();
+  app.require_subcommand(1);
+  app.footer("Exit status: 0 ok, 1 failed, 2 wrong usage. \"remomask COMMAND --help\" shows the\n"
+             "options of a command and an example.");
+  const RegisterCommand commands[] = {
+      register_generate, register_search,  register_import,  register_index,      register_train,
+      register_evaluate, register_convert, register_sheet,   register_procedural, register_info,
+  };
+  for (const RegisterCommand add : commands) add(app, program);
+  app.parse_complete_callback([&] { set_compute_threads(program.threads); });
+  try {
+    app.parse(argc, argv);
+    program.finish_progress();
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  } catch (const Interrupted& error) {
+    program.finish_progress();
+    fmt::print(stderr, "remomask: {}\n", error.what());
+    return kExitFailed;
+  } catch (const std::bad_alloc&) {
+    program.finish_progress();
+    fmt::print(stderr, "remomask: out of memory; use smaller batches or fewer clips\n");
+    return kExitFailed;
+  } catch (const std::exception& error) {
+    program.finish_progress();
+    fmt::print(stderr, "remomask: {}\n", error.what());
+    return kExitFailed;
+  }
+}
+
+}  // namespace
+}  // namespace remomask
+
+int main(int argc, char** argv) { return remomask::run(argc, argv); }

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+#include <stop_token>
+#include <string>
+
+#include "base/progress.h"
+
+namespace remomask {
+
+/// What every sub-command shares: global options, output, stopping.
+class Program {
+ public:
+  bool json = false;    ///< --json: one JSON document on standard output
+  bool quiet = false;   ///< --quiet: no progress
+  int threads = 0;      ///< --threads: 0 for all available CPUs
+  std::string device = "cpu";
+
+  /// Progress on standard error (a bar with an ETA on a terminal, plain lines
+  /// otherwise) and a stop token that Ctrl-C requests.
+  Monitor monitor();
+
+  /// Ends an open progress line.
+  void finish_progress();
+
+  /// Prints the document with --json, otherwise calls nothing.
+  void print_json(const nlohmann::json& document);
+
+  /// A note for people on standard error.
+  void warn(const std::string& message);
+};
+
+/// Registers a sub-command: name, help with an example, options, what to run.
+using RegisterCommand = void (*)(CLI::App& app, Program& program);
+
+void register_import(CLI::App& app, Program& program);
+void register_info(CLI::App& app, Program& program);
+void register_index(CLI::App& app, Program& program);
+void register_search(CLI::App& app, Program& program);
+void register_train(CLI::App& app, Program& program);
+void register_generate(CLI::App& app, Program& program);
+void register_evaluate(CLI::App& app, Program& program);
+void register_convert(CLI::App& app, Program& program);
+void register_sheet(CLI::App& app, Program& program);
+void register_procedural(CLI::App& app, Program& program);
+
+/// Adds a sub-command with its description and an example, shown by --help.
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& summary,
+                      const std::string& example);
+
+/// Path of a file that is shipped in models/: $REMOMASK_MODELS, beside the
+/// program, or the source tree it was built from. Throws Error when it is in
+/// none of them.
+std::string shipped_file(const std::string& name);
+
+}  // namespace remomask
