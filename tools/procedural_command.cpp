@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "db/clip_hash.h"
+#include "db/database.h"
+#include "motion/procedural.h"
+#include "tools/program.h"
+
+namespace remomask {
+
+void register_procedural(CLI::App& app, Program& program) {
+  struct Options {
+    std::string database;
+    ProceduralOptions make;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(
+      app, "procedural", "add motions made by formula, with captions, to a database (no data needed)",
+      "remomask procedural --db motions.sqlite --count 360");
+  command->add_option("--db", options->database, "database file; made when missing")->required();
+  command->add_option("--count", options->make.count, "number of clips")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--seed", options->make.seed, "other seed, other clips")
+      ->capture_default_str();
+  command->callback([options, &program] {
+    const bool exists = std::filesystem::exists(options->database);
+    Database database(options->database, exists ? OpenMode::read_write : OpenMode::create);
+    const Monitor monitor = program.monitor();
+    const auto clips = make_procedural_clips(options->make);
+    int added = 0, known = 0;
+    database.begin();
+    for (const ProceduralClip& made : clips) {
+      Clip clip;
+      clip.name = made.name;
+      clip.source = "procedural";
+      clip.source_file = made.name;
+      clip.split = made.split;
+      clip.licence = "MIT";
+      clip.group = "procedural/" + made.name;
+      clip.content_hash = clip_content_hash(made.motion);
+      clip.frames = made.motion.frames;
+      clip.captions = made.captions;
+      clip.labels = made.labels;
+      if (database.find_content(clip.content_hash)) {
+        ++known;
+      } else {
+        database.add_clip(clip, made.motion);
+        ++added;
+      }
+      monitor.report({"make motions", static_cast<double>(added + known),
+                      static_cast<double>(clips.size()), ""});
+    }
+    database.commit();
+    program.finish_progress();
+    if (program.json) return program.print_json({{"added", added}, {"known", known}});
+    fmt::print("{}: {} motions added, {} were there already\n", options->database, added, known);
+  });
+}
+
+}  // namespace remomask

@@ -1,0 +1,83 @@
+#include "tools/workspace.h"
+
+#include "base/error.h"
+
+namespace remomask {
+
+void FileOptions::add_model(CLI::App& command) {
+  command.add_option("--model", model, "model file (.safetensors); default: the shipped model");
+}
+
+void FileOptions::add_database(CLI::App& command) {
+  command.add_option("--db", database, "motion database; default: the shipped one");
+  command.add_option("--index", index, "index file; default: beside the database");
+}
+
+std::string FileOptions::model_path() const {
+  return model.empty() ? shipped_file("base.safetensors") : model;
+}
+
+std::string FileOptions::database_path() const {
+  return database.empty() ? shipped_file("procedural.sqlite") : database;
+}
+
+std::string FileOptions::index_path() const {
+  return index.empty() ? default_index_path(database_path()) : index;
+}
+
+void FilterOptions::add(CLI::App& command) {
+  command.add_option("--split", splits, "only clips of this split (repeatable)");
+  command.add_option("--label", labels, "only clips with KEY=VALUE among their labels (repeatable)");
+  command.add_option("--min-seconds", min_seconds, "only clips at least this long");
+  command.add_option("--max-seconds", max_seconds, "only clips at most this long");
+}
+
+ClipFilter FilterOptions::filter() const {
+  ClipFilter result;
+  result.splits = splits;
+  for (const std::string& label : labels) result.labels.push_back(parse_label_condition(label));
+  result.min_seconds = min_seconds;
+  result.max_seconds = max_seconds;
+  return result;
+}
+
+const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
+                                const std::string& kind, const std::string& model_path) {
+  const auto found = stages.find(kind);
+  if (found != stages.end()) return found->second;
+  std::string held;
+  for (const auto& [name, stage] : stages) held += (held.empty() ? "" : ", ") + name;
+  throw FileError(model_path, 0, "holds no " + kind + " (it holds: " + held +
+                                     "); train it with \"remomask train " + kind + "\"");
+}
+
+SearchWorkspace::SearchWorkspace(const std::map<std::string, ModelStage>& stages,
+                                 const std::string& model_path, const std::string& database_path,
+                                 const std::string& index_path)
+    : retriever_(require_stage(stages, "retriever", model_path)),
+      database_(database_path, OpenMode::read_only),
+      index_(VectorIndex::load(index_path, database_, retriever_.hash())) {}
+
+std::vector<SearchHit> SearchWorkspace::search(const std::string& text,
+                                               const SearchOptions& options) const {
+  const at::Tensor query = retriever_.encode_text({text}).query.contiguous();
+  return search_database(database_, index_, query.data_ptr<float>(), 1, options).front();
+}
+
+nlohmann::json hits_json(const std::vector<SearchHit>& hits) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const SearchHit& hit : hits) {
+    list.push_back({{"rank", hit.rank},
+                    {"clip_id", hit.clip.id},
+                    {"clip", hit.clip.name},
+                    {"similarity", hit.similarity},
+                    {"captions", hit.clip.captions},
+                    {"source", hit.clip.source},
+                    {"licence", hit.clip.licence},
+                    {"split", hit.clip.split},
+                    {"seconds", clip_seconds(hit.clip)}});
+  }
+  return list;
+}
+
+}  // namespace remomask

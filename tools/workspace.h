@@ -1,0 +1,62 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "db/database.h"
+#include "index/search.h"
+#include "index/vector_index.h"
+#include "nn/model_file.h"
+#include "retriever/retriever.h"
+#include "tools/program.h"
+
+namespace remomask {
+
+/// --model and --db with the shipped files as defaults.
+struct FileOptions {
+  std::string model, database, index;
+
+  void add_model(CLI::App& command);
+  void add_database(CLI::App& command);
+  std::string model_path() const;
+  std::string database_path() const;
+  std::string index_path() const;  ///< --index, or beside the database
+};
+
+/// Options that choose which clips a search may return.
+struct FilterOptions {
+  std::vector<std::string> splits, labels;
+  std::optional<double> min_seconds, max_seconds;
+
+  void add(CLI::App& command);
+  ClipFilter filter() const;
+};
+
+/// A retriever with the database and index that it searches.
+class SearchWorkspace {
+ public:
+  /// Throws Error when the index is missing, stale, or of another retriever.
+  SearchWorkspace(const std::map<std::string, ModelStage>& stages, const std::string& model_path,
+                  const std::string& database_path, const std::string& index_path);
+
+  const Retriever& retriever() const { return retriever_; }
+  const Database& database() const { return database_; }
+  std::vector<SearchHit> search(const std::string& text, const SearchOptions& options) const;
+
+ private:
+  Retriever retriever_;
+  Database database_;
+  VectorIndex index_;
+};
+
+/// The stage of `kind`; throws Error that names the model file when it lacks it.
+const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
+                                const std::string& kind, const std::string& model_path);
+
+/// Evidence as it is printed and stored in generated files.
+nlohmann::json hits_json(const std::vector<SearchHit>& hits);
+
+}  // namespace remomask
