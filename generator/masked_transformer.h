@@ -1,0 +1,71 @@
+#pragma once
+
+#include <torch/nn/module.h>
+#include <torch/nn/modules/embedding.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "generator/ssta.h"
+#include "nn/model_file.h"
+
+namespace remomask {
+
+/// Sizes of the masked transformer.
+struct MaskedConfig {
+  std::string preset = "base";
+  int64_t rows = 6;     ///< rows of the token map
+  int64_t codes = 256;  ///< entries of the base codebook of every row
+  int64_t width = 256;
+  int64_t heads = 4;
+  int64_t layers = 6;
+  int64_t hidden = 1024;
+  double dropout = 0.1;
+  int64_t text_width = 256;       ///< of the text tower's token states
+  int64_t embedding_width = 256;  ///< of the shared text-motion space
+  int64_t max_hits = 4;           ///< most retrieved motions; 0: no retrieval path at all
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MaskedConfig, preset, rows, codes, width, heads, layers, hidden,
+                                   dropout, text_width, embedding_width, max_hits)
+
+/// Predicts the base tokens of a map [T, rows] under a condition (ReMoMask 3.3).
+/// Codebooks are per row, hence so are token table and output head.
+class MaskedTransformerImpl : public torch::nn::Module {
+ public:
+  explicit MaskedTransformerImpl(const MaskedConfig& config);
+
+  std::vector<ConditionCache> prepare(const Condition& condition);
+  /// tokens [B, T, rows] int64, codes or mask_token(); frame_mask [B, T] bool,
+  /// true where a frame exists, or undefined when all do (values of tokens that
+  /// do not exist are ignored). Returns logits [B, T * rows, codes], time-major.
+  at::Tensor forward(const at::Tensor& tokens, const std::vector<ConditionCache>& condition,
+                     const at::Tensor& frame_mask = {},
+                     std::vector<at::Tensor>* after_block = nullptr);
+
+  int64_t mask_token() const { return config_.codes; }
+  const MaskedConfig& config() const { return config_; }
+
+ private:
+  MaskedConfig config_;
+  torch::nn::Embedding token_table_;
+  SstaStack stack_;
+  at::Tensor head_weight_, head_bias_;
+};
+TORCH_MODULE(MaskedTransformer);
+
+/// Mean cross-entropy and accuracy over the entries of `targets` [B, T, rows]
+/// that are not negative; logits [B, T * rows, codes].
+struct TokenLoss {
+  at::Tensor loss;      ///< scalar
+  double accuracy = 0;  ///< share of targets whose code has the largest logit
+  int64_t targets = 0;  ///< how many
+};
+TokenLoss token_loss(const at::Tensor& logits, const at::Tensor& targets);
+
+/// Model <-> stage of a model file (kind "masked").
+ModelStage masked_stage(const MaskedTransformer& model);
+/// Throws Error for another kind or tensors that do not fit. In eval mode.
+MaskedTransformer load_masked(const ModelStage& stage);
+
+}  // namespace remomask
