@@ -4,7 +4,7 @@
 set -eu
 as_root=""
 [ "$(id -u)" = 0 ] || as_root="sudo"
-packages="g++ cmake ninja-build ccache pkg-config python3-minimal
+packages="g++ cmake ninja-build ccache pkg-config
   libtorch-dev libfaiss-dev libopenblas-pthread-dev libsqlite3-dev
   nlohmann-json3-dev libcli11-dev libfmt-dev libeigen3-dev libxxhash-dev
   libarchive-dev libcairo2-dev fonts-dejavu-core libgtest-dev libbenchmark-dev"

@@ -4,5 +4,5 @@ set -eu
 cd "$(dirname "$0")/.."
 tools/install_debian.sh
 tools/build.sh tests
-python3 tests/check_includes.py
+tests/check_includes.sh
 ctest --test-dir build/release --output-on-failure --timeout 600
