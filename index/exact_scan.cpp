@@ -1,0 +1,141 @@
+#include "index/exact_scan.h"
+
+#include <cblas.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <limits>
+
+namespace remomask {
+
+namespace {
+
+// Debian's FAISS has SSE2 code only and does not thread single queries, so it
+// reads memory 4 to 10 times slower than BLAS does. BLAS in turn rounds
+// differently by kernel, thread and position in a block, which would break ties
+// between equal vectors at random. Hence two steps: BLAS finds every row that
+// can be among the best within its error bound, then those few are summed again
+// in one fixed order.
+
+constexpr int64_t kMostQueries = 256;  // of one matrix product
+constexpr int64_t kMostScores = int64_t{1} << 22;
+constexpr int64_t kGatheredRows = 4096;  // stay in the cache between copy and product
+constexpr size_t kFirstLimit = 1024;
+
+/// Twice the bound |fl(x.y) - x.y| <= width * u * |x||y| of any order of
+/// summation, for norms up to 1.01, and the final rounding.
+float score_margin(int width) { return 1.1f * (static_cast<float>(width) + 2) * FLT_EPSILON; }
+
+float exact_score(const float* left, const float* right, int width) {
+  double sum = 0;
+  for (int i = 0; i < width; ++i) sum += static_cast<double>(left[i]) * right[i];
+  return static_cast<float>(sum);
+}
+
+bool better_score(const RowScore& left, const RowScore& right) {
+  return left.score != right.score ? left.score > right.score : left.row < right.row;
+}
+
+/// Rows of one query that can still be among the k best.
+class Candidates {
+ public:
+  Candidates(int64_t k, float margin) : k_(static_cast<size_t>(k)), margin_(margin) {
+    limit_ = std::max(kFirstLimit, 2 * k_);
+  }
+
+  /// `rows` null: the scores belong to rows first, first + 1, ...
+  void offer(const float* scores, int64_t count, int64_t first, const int64_t* rows) {
+    for (int64_t i = 0; i < count; ++i) {
+      if (scores[i] < threshold_) continue;
+      found_.push_back({rows ? rows[i] : first + i, scores[i]});
+      if (found_.size() >= limit_) prune();
+    }
+  }
+
+  std::vector<RowScore> finish(const float* vectors, const float* query, int width) {
+    if (found_.size() > k_) prune();
+    for (RowScore& candidate : found_) {
+      candidate.score = exact_score(vectors + candidate.row * width, query, width);
+    }
+    const size_t kept = std::min(k_, found_.size());
+    std::partial_sort(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(kept),
+                      found_.end(), better_score);
+    found_.resize(kept);
+    return std::move(found_);
+  }
+
+ private:
+  void prune() {
+    const auto last = found_.begin() + static_cast<std::ptrdiff_t>(k_) - 1;
+    std::nth_element(found_.begin(), last, found_.end(), better_score);
+    threshold_ = last->score - margin_;
+    std::erase_if(found_, [this](const RowScore& row) { return row.score < threshold_; });
+    // Many equal vectors: prune more rarely, or the scan would be quadratic.
+    limit_ = std::max(limit_, 2 * found_.size());
+  }
+
+  size_t k_, limit_;
+  float margin_;
+  float threshold_ = -std::numeric_limits<float>::infinity();
+  std::vector<RowScore> found_;
+};
+
+/// scores [query_count][count] = queries * vectors^T
+void score_rows(const float* vectors, int64_t count, int width, const float* queries,
+                int64_t query_count, float* scores) {
+  const auto rows = static_cast<int>(count), wanted = static_cast<int>(query_count);
+  if (wanted == 1) {
+    cblas_sgemv(CblasRowMajor, CblasNoTrans, rows, width, 1.f, vectors, width, queries, 1, 0.f,
+                scores, 1);
+  } else {
+    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasTrans, wanted, rows, width, 1.f, queries, width,
+                vectors, width, 0.f, scores, rows);
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<RowScore>> exact_top_k(const float* vectors, int64_t count, int width,
+                                               const std::vector<int64_t>* rows,
+                                               const float* queries, int64_t query_count,
+                                               int64_t k) {
+  const int64_t available = rows ? static_cast<int64_t>(rows->size()) : count;
+  k = std::min(k, available);
+  std::vector<std::vector<RowScore>> results(static_cast<size_t>(query_count));
+  if (k <= 0 || query_count == 0) return results;
+
+  const int64_t batch = std::min(query_count, kMostQueries);
+  const int64_t block = std::min(available, rows ? kGatheredRows : kMostScores / batch);
+  std::vector<float> scores(static_cast<size_t>(batch * block));
+  std::vector<float> gathered(rows ? static_cast<size_t>(block * width) : 0);
+
+  for (int64_t query = 0; query < query_count; query += batch) {
+    const int64_t in_batch = std::min(batch, query_count - query);
+    const float* batch_queries = queries + query * width;
+    std::vector<Candidates> candidates(static_cast<size_t>(in_batch),
+                                       Candidates(k, score_margin(width)));
+    for (int64_t first = 0; first < available; first += block) {
+      const int64_t in_block = std::min(block, available - first);
+      const int64_t* block_rows = rows ? rows->data() + first : nullptr;
+      const float* source = vectors + first * width;
+      if (rows) {
+        for (int64_t i = 0; i < in_block; ++i) {
+          std::copy_n(vectors + block_rows[i] * width, width, gathered.data() + i * width);
+        }
+        source = gathered.data();
+      }
+      score_rows(source, in_block, width, batch_queries, in_batch, scores.data());
+      for (int64_t i = 0; i < in_batch; ++i) {
+        candidates[static_cast<size_t>(i)].offer(scores.data() + i * in_block, in_block, first,
+                                                 block_rows);
+      }
+    }
+    for (int64_t i = 0; i < in_batch; ++i) {
+      results[static_cast<size_t>(query + i)] =
+          candidates[static_cast<size_t>(i)].finish(vectors, batch_queries + i * width, width);
+    }
+  }
+  return results;
+}
+
+}  // namespace remomask

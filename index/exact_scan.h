@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace remomask {
+
+struct RowScore {
+  int64_t row = 0;
+  float score = 0;  ///< inner product, summed in double and rounded once
+};
+
+/// The `k` rows of highest inner product with each query, best first, equal
+/// scores in the order of their rows; fewer when there are fewer rows.
+/// `vectors` [count][width] and `queries` [query_count][width] have L2 norms of
+/// at most 1.01 and finite values. `rows` (ascending) limits the scan; null
+/// means all. The answer is exact: it does not depend on the number of threads,
+/// on what a query is batched with, or on the BLAS library.
+std::vector<std::vector<RowScore>> exact_top_k(const float* vectors, int64_t count, int width,
+                                               const std::vector<int64_t>* rows,
+                                               const float* queries, int64_t query_count,
+                                               int64_t k);
+
+}  // namespace remomask

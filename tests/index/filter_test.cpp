@@ -1,0 +1,96 @@
+#include "index/filter.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/db/db_test_tools.h"
+
+namespace remomask {
+namespace {
+
+std::vector<Clip> example_clips() {
+  std::vector<Clip> clips(5);
+  for (size_t i = 0; i < clips.size(); ++i) {
+    clips[i].id = static_cast<int64_t>(i) + 1;
+    clips[i].frames = 40 * (static_cast<int>(i) + 1);  // 2, 4, ... 10 seconds
+    clips[i].split = i < 3 ? "train" : "test";
+    clips[i].group = i < 2 ? "one" : "other" + std::to_string(i);
+  }
+  clips[1].mirrored = true;
+  clips[0].labels = {{"content", "walk"}, {"actions", {"walk", "turn left"}}};
+  clips[1].labels = {{"content", "run"}, {"measured", {{"turn", 0.5}, {"far", true}}}};
+  clips[2].labels = {{"content", "walk"}, {"measured", {{"turn", -1}}}};
+  clips[3].labels = {{"measured.turn", "dotted"}, {"actions", {"run"}}};
+  return clips;
+}
+
+std::vector<int64_t> ids_with(const std::string& condition) {
+  ClipFilter filter;
+  filter.labels = {parse_label_condition(condition)};
+  return matching_clips(example_clips(), filter);
+}
+
+using Ids = std::vector<int64_t>;
+
+TEST(ClipFilter, EmptyFilterTakesAll) {
+  EXPECT_TRUE(ClipFilter().empty());
+  EXPECT_EQ(matching_clips(example_clips(), {}), (Ids{1, 2, 3, 4, 5}));
+}
+
+TEST(ClipFilter, LabelsTextListAndNested) {
+  EXPECT_EQ(ids_with("content=walk"), (Ids{1, 3}));
+  EXPECT_EQ(ids_with("actions=turn left"), (Ids{1}));
+  EXPECT_EQ(ids_with("actions=run"), (Ids{4}));
+  EXPECT_EQ(ids_with("measured.turn=0.50"), (Ids{2}));
+  EXPECT_EQ(ids_with("measured.turn=-1"), (Ids{3}));
+  EXPECT_EQ(ids_with("measured.turn=dotted"), (Ids{4}));
+  EXPECT_EQ(ids_with("measured.far=true"), (Ids{2}));
+  EXPECT_EQ(ids_with("content=wal"), (Ids{}));
+  EXPECT_EQ(ids_with("content="), (Ids{}));
+}
+
+TEST(ClipFilter, AllLabelConditionsMustHold) {
+  ClipFilter filter;
+  filter.labels = {{"content", "walk"}, {"actions", "walk"}};
+  EXPECT_EQ(matching_clips(example_clips(), filter), (Ids{1}));
+}
+
+TEST(ClipFilter, SplitsAndLengths) {
+  ClipFilter filter;
+  filter.splits = {"test", "val"};
+  EXPECT_EQ(matching_clips(example_clips(), filter), (Ids{4, 5}));
+  filter = {};
+  filter.min_seconds = 4;
+  filter.max_seconds = 8;
+  EXPECT_EQ(matching_clips(example_clips(), filter), (Ids{2, 3, 4}));
+  filter.max_seconds = 7.9;
+  EXPECT_EQ(matching_clips(example_clips(), filter), (Ids{2, 3}));
+}
+
+TEST(ClipFilter, Exclusions) {
+  ClipFilter filter;
+  filter.excluded_groups = {"one"};
+  filter.excluded_clips = {5};
+  EXPECT_FALSE(filter.empty());
+  EXPECT_EQ(matching_clips(example_clips(), filter), (Ids{3, 4}));
+  filter = {};
+  filter.exclude_mirrored = true;
+  EXPECT_EQ(matching_clips(example_clips(), filter), (Ids{1, 3, 4, 5}));
+}
+
+TEST(ClipFilter, RefusesMistakes) {
+  ClipFilter filter;
+  filter.splits = {"tests"};
+  EXPECT_NE(error_of([&] { matching_clips(example_clips(), filter); }).find("'tests'"),
+            std::string::npos);
+  filter = {};
+  filter.min_seconds = 3;
+  filter.max_seconds = 2;
+  EXPECT_NE(error_of([&] { matching_clips(example_clips(), filter); }), "");
+  EXPECT_NE(error_of([] { ids_with("contents=walk"); }).find("'contents'"), std::string::npos);
+  EXPECT_NE(error_of([] { parse_label_condition("walk"); }).find("key=value"), std::string::npos);
+  EXPECT_NE(error_of([] { parse_label_condition("=walk"); }), "");
+  EXPECT_EQ(parse_label_condition("a=b=c").value, "b=c");
+}
+
+}  // namespace
+}  // namespace remomask
