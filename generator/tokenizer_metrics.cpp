@@ -1,0 +1,114 @@
+#include "generator/tokenizer_metrics.h"
+
+#include <torch/types.h>
+
+#include "generator/feature_layout.h"
+#include "generator/length_batches.h"
+#include "generator/motion_recovery.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr double kMillimetres = 1000;
+constexpr double kStandingSpeed = 0.005;  // of the original's foot, a frame
+constexpr size_t kMetricBatch = 64;
+
+/// Sums over frames; divided at the end.
+class ErrorSums {
+ public:
+  explicit ErrorSums(const Skeleton& skeleton) : skeleton_(skeleton) {
+    feet_.assign(skeleton.left_feet.begin(), skeleton.left_feet.end());
+    feet_.insert(feet_.end(), skeleton.right_feet.begin(), skeleton.right_feet.end());
+  }
+
+  /// World positions [B, T, J, 3].
+  void add(const at::Tensor& output, const at::Tensor& target) {
+    frames_ += static_cast<double>(output.size(0) * output.size(1));
+    const auto joint_error = [](const at::Tensor& error) {
+      return error.norm(2, -1).mean(-1).sum().item<double>();
+    };
+    mpjpe_ += joint_error((output - output.slice(2, 0, 1)) - (target - target.slice(2, 0, 1)));
+    global_ += joint_error(output - target);
+    bones_ += (bone_lengths(output, skeleton_) - bone_lengths(target, skeleton_))
+                  .abs()
+                  .mean(-1)
+                  .sum()
+                  .item<double>();
+    const auto index = torch::tensor(feet_, torch::kLong);
+    const auto steps = [&](const at::Tensor& positions) {
+      const auto feet = positions.index_select(2, index);
+      return feet.slice(1, 1) - feet.slice(1, 0, feet.size(1) - 1);
+    };
+    const auto standing = (steps(target).norm(2, -1) < kStandingSpeed).to(torch::kFloat);
+    const auto across = steps(output).index_select(-1, torch::tensor({0, 2})).norm(2, -1);
+    skate_ += (across * standing).sum().item<double>();
+    standing_ += standing.sum().item<double>();
+  }
+
+  ReconstructionErrors errors() const {
+    ReconstructionErrors result;
+    if (frames_ > 0) {
+      result.mpjpe = kMillimetres * mpjpe_ / frames_;
+      result.global_mpjpe = kMillimetres * global_ / frames_;
+      result.bone_length = kMillimetres * bones_ / frames_;
+    }
+    if (standing_ > 0) result.foot_skate = kMillimetres * skate_ / standing_;
+    return result;
+  }
+
+ private:
+  const Skeleton& skeleton_;
+  std::vector<int64_t> feet_;
+  double frames_ = 0, mpjpe_ = 0, global_ = 0, bones_ = 0, skate_ = 0, standing_ = 0;
+};
+
+}  // namespace
+
+TokenizerMetrics measure_tokenizer(TokenizerNetwork& network,
+                                   const std::vector<const Features*>& clips) {
+  at::NoGradGuard no_grad;
+  const TokenizerConfig& config = network->config();
+  const Skeleton& skeleton = network->skeleton();
+  const int64_t groups = network->quantizer()->options().groups;
+  ErrorSums all(skeleton), base(skeleton);
+  TokenizerMetrics metrics;
+  auto hits = torch::zeros({config.levels, groups, config.codes}, torch::kDouble);
+  for (const LengthBatch& batch : batches_by_length(clips, kFramesPerToken, kMetricBatch)) {
+    const auto features = stack_batch(clips, batch);
+    const auto target = recover_positions(features, skeleton);
+    const auto tokens = network->tokens(network->normalise(features));
+    const auto decoded = [&](int64_t levels) {
+      return recover_positions(
+          network->denormalise(network->from_tokens(tokens.slice(-1, 0, levels))), skeleton);
+    };
+    all.add(decoded(config.levels), target);
+    base.add(decoded(1), target);
+    metrics.clips += features.size(0);
+    metrics.frames += features.size(0) * features.size(1);
+    for (int64_t level = 0; level < config.levels; ++level) {
+      for (int64_t group = 0; group < groups; ++group) {
+        const auto level_tokens = tokens.select(-1, level);
+        const auto used = groups == 1 ? level_tokens : level_tokens.select(-1, group);
+        hits[level][group] += torch::bincount(used.flatten(), {}, config.codes);
+      }
+    }
+  }
+  metrics.all_levels = all.errors();
+  metrics.base_level = base.errors();
+  for (int64_t level = 0; level < config.levels; ++level) {
+    metrics.code_use.push_back((hits[level] > 0).to(torch::kDouble).mean().item<double>());
+    const auto share = hits[level] / hits[level].sum(-1, true).clamp_min(1);
+    const auto entropy = -(share * share.clamp_min(1e-12).log()).sum(-1);
+    metrics.perplexity.push_back(entropy.exp().mean().item<double>());
+  }
+  return metrics;
+}
+
+std::vector<const Features*> clip_features(const std::vector<TrainingClip>& clips) {
+  std::vector<const Features*> features;
+  for (const TrainingClip& clip : clips) features.push_back(&clip.features);
+  return features;
+}
+
+}  // namespace remomask
