@@ -44,10 +44,11 @@ Bvh parse_bvh(std::string_view text, const std::string& path);
 /// BVH text of the file (six decimals).
 std::string format_bvh(const Bvh& bvh);
 
-/// A point that moves with the skeleton: a joint or its End Site.
+/// A point that moves with a joint, at `offset` in the joint's own axes (zero:
+/// the joint itself; its End Site's OFFSET: the End Site).
 struct BvhPoint {
   int joint = 0;
-  bool end_site = false;
+  Vec3 offset = Vec3::Zero();
 };
 
 /// Forward kinematics of some points; only their ancestors are computed.

@@ -73,14 +73,9 @@ void BvhKinematics::solve(const float* channel_values) {
 void BvhKinematics::write_points(float* out) const {
   for (const BvhPoint& point : points_) {
     const Transform& world = world_[point.joint];
+    const double local[3] = {point.offset.x(), point.offset.y(), point.offset.z()};
     double position[3] = {};
-    if (point.end_site) {
-      const Vec3& end = *bvh_.joints[point.joint].end_site;
-      const double local[3] = {end.x(), end.y(), end.z()};
-      transform_point(world.matrix, world.origin, local, position);
-    } else {
-      std::copy(world.origin, world.origin + 3, position);
-    }
+    transform_point(world.matrix, world.origin, local, position);
     for (int axis = 0; axis < 3; ++axis) *out++ = static_cast<float>(position[axis]);
   }
 }

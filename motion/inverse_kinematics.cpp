@@ -10,6 +10,7 @@ namespace remomask {
 
 namespace {
 
+constexpr double kRigidMetres = 0.0005;
 constexpr int kPelvis = 0, kSpine1 = 3, kSpine2 = 6, kSpine3 = 9;
 
 /// T-pose offsets in the proportions of the human body, metres; only the
@@ -114,6 +115,47 @@ void spread_spine_twist(const std::vector<Vec3>& rest, Quat* world) {
   world[kSpine2] = world[kSpine2] * Quat(Eigen::AngleAxisd(twist * 2 / 3, axis));
 }
 
+/// Children of joints with several children.
+std::vector<bool> free_joints(const std::vector<std::vector<int>>& children) {
+  std::vector<bool> result(children.size(), false);
+  for (const std::vector<int>& siblings : children) {
+    if (siblings.size() < 2) continue;
+    for (const int j : siblings) result[j] = true;
+  }
+  return result;
+}
+
+/// World rotations of one frame.
+std::vector<Quat> solve_frame(const Motion& motion, int frame, const std::vector<Vec3>& rest,
+                              const std::vector<std::vector<int>>& children,
+                              const std::vector<bool>& free) {
+  const Skeleton& skeleton = humanml_skeleton();
+  std::vector<Vec3> reached(children.size());
+  std::vector<Quat> world(children.size());
+  for (size_t j = 0; j < children.size(); ++j) {
+    const int parent = skeleton.parents[j];
+    const Quat carried = parent >= 0 ? world[parent] : Quat::Identity();
+    reached[j] = parent < 0 || free[j] ? motion.position(frame, static_cast<int>(j))
+                                       : Vec3(reached[parent] + carried * rest[j]);
+    if (children[j].size() == 1) {
+      // Aiming from where the joint came to lie keeps a bone that stretches
+      // from shifting the rest of the limb.
+      const int child = children[j][0];
+      const Vec3 target = motion.position(frame, child) - reached[j];
+      world[j] = shortest_arc(carried * rest[child], target) * carried;
+    } else if (children[j].size() > 1) {
+      std::vector<Vec3> bones;
+      for (const int child : children[j]) bones.push_back(rest[child]);
+      const int joint = static_cast<int>(j);
+      world[j] = best_rotation(bones, bones_from(motion, frame, joint, children[j]));
+    } else {
+      world[j] = carried;
+    }
+  }
+  spread_spine_twist(rest, world.data());
+  return world;
+}
+
 const std::vector<int>& bvh_order() {
   static const std::vector<int> order = {0, 1,  4,  7,  10, 2,  5,  8,  11, 3,  6,
                                          9, 12, 15, 13, 16, 18, 20, 14, 17, 19, 21};
@@ -179,34 +221,20 @@ Pose22 solve_pose(const Motion& motion) {
   const int joints = skeleton.joints();
   Pose22 pose;
   pose.rest_offsets = fit_rest_offsets(motion, skeleton, children);
-  std::vector<Vec3> reached(joints);
-  std::vector<Quat> world(joints);
+  const std::vector<bool> free = free_joints(children);
   for (int t = 0; t < motion.frames; ++t) {
     pose.root.push_back(motion.position(t, kPelvis));
-    reached[kPelvis] = pose.root.back();
-    for (int j = 0; j < joints; ++j) {
-      const int parent = skeleton.parents[j];
-      if (parent >= 0) reached[j] = reached[parent] + world[parent] * pose.rest_offsets[j];
-      const Quat carried = parent >= 0 ? world[parent] : Quat::Identity();
-      if (children[j].size() == 1) {
-        // Aiming from where the joint came to lie keeps a misfit of the
-        // shoulders or hips from running down the limb.
-        const int child = children[j][0];
-        const Vec3 target = motion.position(t, child) - reached[j];
-        world[j] = shortest_arc(carried * pose.rest_offsets[child], target) * carried;
-      } else if (children[j].size() > 1) {
-        std::vector<Vec3> rest;
-        for (const int child : children[j]) rest.push_back(pose.rest_offsets[child]);
-        world[j] = best_rotation(rest, bones_from(motion, t, j, children[j]));
-      } else {
-        world[j] = carried;
-      }
-    }
-    spread_spine_twist(pose.rest_offsets, world.data());
+    const std::vector<Quat> world = solve_frame(motion, t, pose.rest_offsets, children, free);
     for (int j = 0; j < joints; ++j) {
       const int parent = skeleton.parents[j];
       pose.local.push_back(
           (parent >= 0 ? world[parent].conjugate() * world[j] : world[j]).normalized());
+      pose.translations.push_back(free[j]
+                                      ? Vec3(world[parent].conjugate() *
+                                             (motion.position(t, j) - motion.position(t, parent)))
+                                      : pose.rest_offsets[j]);
+      const double misfit = (pose.translations.back() - pose.rest_offsets[j]).norm();
+      if (misfit > kRigidMetres) pose.rigid = false;
     }
   }
   return pose;
@@ -216,6 +244,7 @@ Bvh motion_to_bvh(const Motion& motion) {
   const Skeleton& skeleton = humanml_skeleton();
   const Pose22 pose = solve_pose(motion);
   const std::vector<std::vector<int>> children = children_of(skeleton);
+  const std::vector<bool> free = free_joints(children);
   const std::vector<int>& order = bvh_order();
   Bvh bvh;
   bvh.frames = motion.frames;
@@ -227,7 +256,7 @@ Bvh motion_to_bvh(const Motion& motion) {
     joint.parent = j == kPelvis ? -1 : static_cast<int>(parent - order.begin());
     joint.offset = pose.rest_offsets[j] * 100;
     joint.first_channel = bvh.channels;
-    if (j == kPelvis) joint.channels = {0, 1, 2};
+    if (j == kPelvis || (!pose.rigid && free[j])) joint.channels = {0, 1, 2};
     joint.channels.insert(joint.channels.end(), {5, 4, 3});
     if (children[j].empty()) joint.end_site = end_site_offset(j);
     bvh.channels += static_cast<int>(joint.channels.size());
@@ -235,12 +264,16 @@ Bvh motion_to_bvh(const Motion& motion) {
   }
   std::vector<Vec3> before(order.size(), Vec3::Zero());
   for (int t = 0; t < motion.frames; ++t) {
-    for (int axis = 0; axis < 3; ++axis) {
-      bvh.values.push_back(static_cast<float>(pose.root[t][axis] * 100));
-    }
-    for (const int j : order) {
-      const Quat& local = pose.local[static_cast<size_t>(t) * order.size() + j];
-      before[j] = unwrapped(euler_zyx(local), before[j]);
+    for (size_t k = 0; k < order.size(); ++k) {
+      const int j = order[k];
+      const size_t at = static_cast<size_t>(t) * order.size() + j;
+      if (bvh.joints[k].channels.size() == 6) {
+        const Vec3& position = j == kPelvis ? pose.root[t] : pose.translations[at];
+        for (int axis = 0; axis < 3; ++axis) {
+          bvh.values.push_back(static_cast<float>(position[axis] * 100));
+        }
+      }
+      before[j] = unwrapped(euler_zyx(pose.local[at]), before[j]);
       for (int i = 0; i < 3; ++i) {
         bvh.values.push_back(static_cast<float>(before[j][i] * 180 / M_PI));
       }

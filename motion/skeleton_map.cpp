@@ -27,6 +27,11 @@ MappedPoint parse_point(const json& value) {
     point.from = value[0].get<std::string>();
     point.to = value[1].get<std::string>();
     point.weight = value[2].get<double>();
+  } else if (value.contains("at")) {
+    point.from = value["at"].get<std::string>();
+    const auto offset = value.at("offset").get<std::array<double, 3>>();
+    point.offset = Vec3(offset[0], offset[1], offset[2]);
+    point.weight = 1;
   } else {
     point.from = value.at("end").get<std::string>();
     point.end_site = true;
@@ -66,6 +71,15 @@ std::unordered_map<std::string, int> joints_by_name(const Bvh& bvh) {
     index.emplace(without_prefix(bvh.joints[j].name), static_cast<int>(j));
   }
   return index;
+}
+
+/// The other end of a blend.
+BvhPoint blend_target(const Bvh& bvh, const std::unordered_map<std::string, int>& index,
+                      const MappedPoint& point) {
+  if (!point.to.empty()) return {index.at(point.to), Vec3::Zero()};
+  const int joint = index.at(point.from);
+  if (point.end_site) return {joint, bvh.joints[joint].end_site.value()};
+  return {joint, point.offset.value_or(Vec3::Zero())};
 }
 
 /// Names that a map needs, End Sites as "end of A".
@@ -151,8 +165,8 @@ MappedKinematics::MappedKinematics(const Bvh& bvh, const SkeletonMap& map)
         std::vector<BvhPoint> points;
         for (const MappedPoint& point : map.points) {
           const int from = index.at(point.from);
-          points.push_back({from, false});
-          points.push_back({point.to.empty() ? from : index.at(point.to), point.end_site});
+          points.push_back({from, Vec3::Zero()});
+          points.push_back(blend_target(bvh, index, point));
         }
         return BvhKinematics(bvh, std::move(points));
       }()),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,9 @@ namespace remomask {
 /// A point of a source skeleton: from + weight (to - from).
 struct MappedPoint {
   std::string from;
-  std::string to;  ///< empty: the End Site of `from` when `end_site`, else `from` itself
+  std::string to;  ///< empty: a point of `from`: its End Site, or at `offset`, or itself
   bool end_site = false;
+  std::optional<Vec3> offset;  ///< in the axes of `from`, file units: a point fixed to it
   double weight = 0;
 };
 
