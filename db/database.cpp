@@ -178,6 +178,10 @@ int Database::remove_clips(const std::string& source, const std::string& source_
       .bind(2, source_file)
       .run();
   const auto removed = static_cast<int>(impl_->connection.changes());
+  SqliteStatement(impl_->connection, "DELETE FROM import_log WHERE source = ? AND file = ?")
+      .bind(1, source)
+      .bind(2, source_file)
+      .run();
   if (removed > 0) impl_->grow_generation();
   scope.commit();
   return removed;

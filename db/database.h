@@ -68,7 +68,7 @@ class Database {
   /// content that is already there.
   int64_t add_clip(const Clip& clip, const Motion& motion);
   /// Removes all clips cut from one file, with their captions, motions and
-  /// embeddings; returns how many.
+  /// embeddings, and the note of its import; returns how many.
   int remove_clips(const std::string& source, const std::string& source_file);
   std::optional<int64_t> find_name(const std::string& name) const;
   std::optional<int64_t> find_content(const std::string& content_hash) const;

@@ -26,7 +26,7 @@ constexpr const char* kJointsFolder = "new_joints";
 constexpr const char* kVectorsFolder = "new_joint_vecs";
 constexpr const char* kTextsFolder = "texts";
 
-/// Stems of the files with this extension.
+/// The files with this extension, sorted.
 std::vector<fs::path> files_with_extension(const fs::path& folder, const char* extension) {
   std::vector<fs::path> files;
   if (!fs::is_directory(folder)) return files;
@@ -106,14 +106,13 @@ void HumanmlFolder::find_motions() {
     }
   }
   for (const auto& [id, path] : motions) {
-    ids_.push_back(id);
     files_.push_back(
-        {path.lexically_relative(folder).generic_string(), path.string(), fs::file_size(path)});
+        {path.lexically_relative(folder).generic_string(), id, path.string(), fs::file_size(path)});
+    known_.insert(id);
   }
 }
 
 void HumanmlFolder::read_splits() {
-  const std::set<std::string> known(ids_.begin(), ids_.end());
   for (const char* split : {"train", "val", "test"}) {
     const std::string path = (fs::path(options_.folder) / (std::string(split) + ".txt")).string();
     if (!fs::exists(path)) {
@@ -127,7 +126,7 @@ void HumanmlFolder::read_splits() {
                id.end());
       if (id.empty()) continue;
       const std::string where = path + ":" + std::to_string(line) + ": clip '" + id + "' ";
-      if (!known.contains(id)) {
+      if (!known_.contains(id)) {
         warnings_.push_back(where + "has no motion file");
       } else if (const auto [other, is_new] = splits_.emplace(id, split);
                  !is_new && other->second != split) {
@@ -139,14 +138,13 @@ void HumanmlFolder::read_splits() {
 }
 
 void HumanmlFolder::find_texts() {
-  const std::set<std::string> known(ids_.begin(), ids_.end());
   for (const fs::path& path :
        files_with_extension(fs::path(options_.folder) / kTextsFolder, ".txt")) {
     const std::string id = path.stem().string();
     with_text_.insert(id);
-    if (!known.contains(id)) warnings_.push_back(path.string() + ": has no motion file");
+    if (!known_.contains(id)) warnings_.push_back(path.string() + ": has no motion file");
   }
-  for (const std::string& id : ids_) {
+  for (const std::string& id : known_) {
     if (!with_text_.contains(id)) {
       warnings_.push_back(text_path(id) + ": is missing: '" + id +
                           "' is stored without captions, in no split");
@@ -160,14 +158,15 @@ std::string HumanmlFolder::text_path(const std::string& id) const {
 
 std::string HumanmlFolder::fingerprint(size_t i) const {
   std::string parts = content_hash(read_file(files_[i].path)) + options_fingerprint();
-  if (with_text_.contains(ids_[i])) parts += content_hash(read_file(text_path(ids_[i])));
-  const auto split = splits_.find(ids_[i]);
+  if (with_text_.contains(files_[i].key))
+    parts += content_hash(read_file(text_path(files_[i].key)));
+  const auto split = splits_.find(files_[i].key);
   return content_hash(parts + (split == splits_.end() ? "" : split->second));
 }
 
 std::vector<PreparedClip> HumanmlFolder::prepare(size_t i,
                                                  std::vector<std::string>& warnings) const {
-  const std::string& id = ids_[i];
+  const std::string& id = files_[i].key;
   const auto [motion, skeleton] = read_humanml_motion(files_[i].path);
   Clip clip;
   clip.name = id;

@@ -27,7 +27,7 @@ class HumanmlFolder : public MotionSource {
   void find_texts();
   std::string text_path(const std::string& id) const;
 
-  std::vector<std::string> ids_;  ///< of each file
+  std::set<std::string> known_;  ///< IDs with a motion
   std::set<std::string> with_text_;
   std::unordered_map<std::string, std::string> splits_;
 };

@@ -32,8 +32,9 @@ struct ReadFile {
   std::vector<PreparedClip> clips;
 };
 
-std::string joined_paths(const std::string& message, const std::string& folder) {
-  std::string text = message;
+/// Messages name files as they are called in the data set: the folder may be a
+/// temporary one.
+std::string without_folder(std::string text, const std::string& folder) {
   const std::string prefix = folder + "/";
   for (size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix, at)) {
     text.erase(at, prefix.size());
@@ -46,7 +47,7 @@ ReadFile read_source_file(const MotionSource& source, size_t i,
   ReadFile file;
   try {
     file.fingerprint = source.fingerprint(i);
-    const auto note = imported.find(source.files()[i].name);
+    const auto note = imported.find(source.files()[i].key);
     file.known = note != imported.end() && note->second == file.fingerprint;
     if (!file.known) file.clips = source.prepare(i, file.warnings);
   } catch (const Error& error) {
@@ -83,7 +84,7 @@ class ImportWriter {
     } else if (!file.rejection.empty()) {
       reject(place.name, file.rejection);
     } else {
-      store_clips(place.name, file);
+      store_clips(place, file);
     }
     show(i + 1);
     if (monitor_.stop_requested()) {
@@ -109,11 +110,15 @@ class ImportWriter {
   ImportReport& report() { return report_; }
 
  private:
-  void store_clips(const std::string& file, const ReadFile& read) {
-    std::vector<const PreparedClip*> wanted;
-    const Clip& first = read.clips.front().clip;
+  void store_clips(const SourceFile& place, const ReadFile& read) {
+    const std::string& file = place.name;
+    const std::string& source = source_.options().source;
     // An older content or description of the same file gives way.
-    database_.remove_clips(first.source, first.source_file);
+    const int removed = database_.remove_clips(source, place.key);
+    if (removed > 0) {
+      add_warning(file + ": the file, its description or the options changed; its " +
+                  std::to_string(removed) + " clips of an earlier import were replaced");
+    }
     for (const PreparedClip& item : read.clips) {
       if (const auto taken = database_.find_name(item.clip.name)) {
         reject(file, "the name '" + item.clip.name + "' is taken by a clip of '" +
@@ -122,41 +127,55 @@ class ImportWriter {
       }
     }
     int stored = 0;
+    std::vector<std::pair<const Clip*, Clip>> duplicates;
     for (const PreparedClip& item : read.clips) {
       if (const auto same = database_.find_content(item.clip.content_hash)) {
-        refuse_duplicate(file, item.clip, database_.clip(*same), read.clips.size() > 1);
-        continue;
+        duplicates.emplace_back(&item.clip, database_.clip(*same));
+      } else {
+        database_.add_clip(item.clip, item.motion);
+        ++stored;
       }
-      database_.add_clip(item.clip, item.motion);
-      ++stored;
     }
+    refuse_duplicates(file, duplicates, stored == 0);
     if (stored == 0) return;
     ++report_.files_stored;
     report_.clips_stored += stored;
     if (read.clips.size() > 1) report_.clips_windowed += stored;
-    database_.note_imported_file(first.source, file, read.fingerprint,
+    database_.note_imported_file(source, place.key, read.fingerprint,
                                  std::to_string(stored) + " clips");
   }
 
-  void refuse_duplicate(const std::string& file, const Clip& clip, const Clip& same,
-                        bool one_of_several) {
-    reject(one_of_several ? file + " (" + clip.name + ")" : file,
-           "is the same motion as the stored clip '" + same.name + "' of '" + same.source + "'");
+  /// `all`: nothing of the file is new, so that it is refused as a whole.
+  void refuse_duplicates(const std::string& file,
+                         const std::vector<std::pair<const Clip*, Clip>>& duplicates, bool all) {
+    std::string twins;
+    for (const auto& [clip, same] : duplicates) {
+      const std::string twin = "'" + same.name + "' of '" + same.source + "'";
+      twins += (twins.empty() ? "" : ", ") + twin;
+      if (!all) reject(file + " (" + clip->name + ")", "is the same motion as " + twin);
+      warn_of_lost_captions(file, *clip, same);
+    }
+    if (all) reject(file, "is the same motion as " + twins);
+  }
+
+  void warn_of_lost_captions(const std::string& file, const Clip& clip, const Clip& same) {
     const std::set<std::string> known(same.captions.begin(), same.captions.end());
     const auto is_new = [&](const std::string& caption) { return !known.contains(caption); };
     const auto count = std::count_if(clip.captions.begin(), clip.captions.end(), is_new);
-    if (count > 0) {
-      add_warning(file + ": " + std::to_string(count) + " captions that '" + same.name +
-                  "' does not have are not stored, as the motion is a duplicate");
-    }
+    if (count == 0) return;
+    add_warning(file + ": " + std::to_string(count) + " captions that '" + same.name +
+                "' does not have are not stored, as the motion is a duplicate");
   }
 
   void reject(const std::string& file, const std::string& reason) {
-    report_.rejected.push_back({file, joined_paths(reason, source_.options().folder)});
+    std::string text = without_folder(reason, source_.options().folder);
+    // The report names the file already.
+    if (text.starts_with(file + ": ")) text.erase(0, file.size() + 2);
+    report_.rejected.push_back({file, text});
   }
 
   void add_warning(const std::string& warning) {
-    report_.warnings.push_back(joined_paths(warning, source_.options().folder));
+    report_.warnings.push_back(without_folder(warning, source_.options().folder));
   }
 
   void show(size_t files_done) const {

@@ -24,6 +24,10 @@ bool is_motion_file(const fs::path& path) {
   return extension == ".bvh" || extension == ".npy";
 }
 
+std::string path_without_extension(const std::string& name) {
+  return fs::path(name).replace_extension().generic_string();
+}
+
 /// Labels of a captions file that say how its motion file must be read.
 class ReadingLabels {
  public:
@@ -104,34 +108,40 @@ LoadedMotion load_with_hint(const SourceFile& file, MotionFileOptions options,
 MotionFolder::MotionFolder(const ImportOptions& options) : MotionSource(options) {
   if (!options_.captions_file.empty()) captions_ = CaptionsFile(options_.captions_file);
   find_files();
+  name_clips();
   match_captions();
 }
 
 void MotionFolder::find_files() {
   for (const auto& entry : fs::recursive_directory_iterator(options_.folder)) {
     if (!entry.is_regular_file() || !is_motion_file(entry.path())) continue;
-    files_.push_back({entry.path().lexically_relative(options_.folder).generic_string(),
+    files_.push_back({entry.path().lexically_relative(options_.folder).generic_string(), "",
                       entry.path().string(), entry.file_size()});
   }
   std::sort(files_.begin(), files_.end(),
             [](const SourceFile& a, const SourceFile& b) { return a.name < b.name; });
-  std::unordered_map<std::string, int> stems;
-  for (const SourceFile& file : files_) ++stems[fs::path(file.name).stem().string()];
+}
+
+/// A clip is called as its file: the stem, or where several files share it, the
+/// path without the extension, or with it.
+void MotionFolder::name_clips() {
+  std::unordered_map<std::string, int> stems, paths;
   for (const SourceFile& file : files_) {
-    const fs::path path(file.name);
-    const std::string stem = path.stem().string();
-    names_.push_back(stems[stem] == 1 ? stem : (path.parent_path() / path.stem()).generic_string());
+    ++stems[fs::path(file.name).stem().string()];
+    ++paths[path_without_extension(file.name)];
+  }
+  for (SourceFile& file : files_) {
+    const std::string stem = fs::path(file.name).stem().string();
+    const std::string path = path_without_extension(file.name);
+    file.key = stems[stem] == 1 ? stem : paths[path] == 1 ? path : file.name;
   }
 }
 
 void MotionFolder::match_captions() {
   std::set<const CaptionEntry*> used;
   for (size_t i = 0; i < files_.size(); ++i) {
-    const CaptionEntry* entry = captions_.find(names_[i]);
-    if (!entry) {
-      const fs::path path(files_[i].name);
-      entry = captions_.find((path.parent_path() / path.stem()).generic_string());
-    }
+    const CaptionEntry* entry = captions_.find(files_[i].key);
+    if (!entry) entry = captions_.find(path_without_extension(files_[i].name));
     described_.push_back(entry);
     if (entry) {
       used.insert(entry);
@@ -165,12 +175,12 @@ std::string MotionFolder::fingerprint(size_t i) const {
 std::vector<PreparedClip> MotionFolder::prepare(size_t i,
                                                 std::vector<std::string>& warnings) const {
   Clip clip;
-  clip.name = names_[i];
+  clip.name = files_[i].key;
   clip.source = options_.source;
-  clip.source_file = names_[i];
+  clip.source_file = files_[i].key;
   clip.split = "none";
   clip.licence = options_.licence;
-  clip.group = options_.source + "/" + names_[i];
+  clip.group = options_.source + "/" + files_[i].key;
   MotionFileOptions reading;
   if (const CaptionEntry* entry = described_[i]) {
     const ReadingLabels labels(captions_.path(), *entry);

@@ -17,10 +17,10 @@ class MotionFolder : public MotionSource {
 
  private:
   void find_files();
+  void name_clips();
   void match_captions();
 
   CaptionsFile captions_;
-  std::vector<std::string> names_;              ///< clip name of each file
   std::vector<const CaptionEntry*> described_;  ///< of each file, or nullptr
 };
 

@@ -12,7 +12,8 @@ namespace remomask {
 
 /// A motion file of a data set.
 struct SourceFile {
-  std::string name;  ///< path in the data set: its key in the notes of the import
+  std::string name;  ///< path in the data set, for messages
+  std::string key;   ///< unique in the data set: Clip::source_file, and its note of the import
   std::string path;
   uint64_t bytes = 0;
 };

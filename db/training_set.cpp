@@ -29,14 +29,6 @@ std::string label_text(const nlohmann::json& labels, const char* key) {
   return label != labels.end() && label->is_string() ? label->get<std::string>() : std::string();
 }
 
-std::string content_of_labels(const nlohmann::json& labels) {
-  const std::string content = label_text(labels, "content");
-  if (!content.empty()) return content;
-  const auto actions = labels.find("actions");
-  if (actions == labels.end() || !actions->is_array() || actions->empty()) return "";
-  return actions->front().is_string() ? actions->front().get<std::string>() : "";
-}
-
 std::string mirror_name(const Clip& clip) {
   return clip.mirrored && clip.name.starts_with('M') ? clip.name.substr(1) : "M" + clip.name;
 }
@@ -73,6 +65,14 @@ TrainingClip mirror_twin(const TrainingClip& original, const std::string& name) 
 }
 
 }  // namespace
+
+std::string clip_content(const Clip& clip) {
+  const std::string content = label_text(clip.labels, "content");
+  if (!content.empty()) return content;
+  const auto actions = clip.labels.find("actions");
+  if (actions == clip.labels.end() || !actions->is_array() || actions->empty()) return "";
+  return actions->front().is_string() ? actions->front().get<std::string>() : "";
+}
 
 std::vector<TrainingClip> load_training_set(const Database& database,
                                             const TrainingSetOptions& options) {
@@ -115,7 +115,7 @@ std::vector<TrainingClip> load_training_set(const Database& database,
     training.split = clip.split;
     training.group = group;
     training.captions = clip.captions;
-    training.content = content_of_labels(clip.labels);
+    training.content = clip_content(clip);
     training.unseen = label_text(clip.labels, "unseen");
     const std::string twin_name = mirror_name(clip);
     item.with_twin = options.add_mirrored && !names.contains(twin_name);

@@ -30,6 +30,10 @@ struct TrainingSetOptions {
   int max_frames = 196;  ///< longer clips are cut at the end
 };
 
+/// What the clip shows in one word or phrase: its label "content", else its
+/// first action; "" when it has neither.
+std::string clip_content(const Clip& clip);
+
 /// Loads clips and computes their features. Deterministic order (by id, twin
 /// right after its original).
 std::vector<TrainingClip> load_training_set(const Database& database,
