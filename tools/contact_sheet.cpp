@@ -1,0 +1,234 @@
+#include "tools/contact_sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "tools/figure_drawing.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr double kMargin = 28, kCardGap = 18, kPadding = 22;
+constexpr double kTitleHeight = 34, kSubtitleHeight = 24, kTimesHeight = 26;
+constexpr double kFigureHeight = 250;  // pixels for the tallest pose
+constexpr double kShownHeight = 2.05;  // metres that fit into it, grows for high jumps
+constexpr double kOnionShare = 0.30;   // of the card's width
+
+struct CairoDeleter {
+  void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
+  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+};
+
+void check_sheet(const std::vector<SheetRow>& rows, const SheetOptions& options) {
+  if (rows.empty()) throw Error("a contact sheet needs at least one motion");
+  if (options.poses < 2 || options.poses > 24)
+    throw Error("a contact sheet shows 2 to 24 poses a row");
+  if (options.width < 600 || options.width > 8000)
+    throw Error("a contact sheet is 600 to 8000 pixels wide");
+  if (options.onion_poses < 0 || options.onion_poses == 1) {
+    throw Error("the strip through space shows 0 or at least 2 poses");
+  }
+  for (const SheetRow& row : rows) {
+    if (row.motion.joints != humanml_skeleton().joints() || row.motion.frames < 1) {
+      throw Error("contact sheet: \"" + row.title + "\" is not a motion of 22 joints with frames");
+    }
+    if (!std::all_of(row.motion.positions.begin(), row.motion.positions.end(),
+                     [](float v) { return std::isfinite(v); })) {
+      throw Error("contact sheet: \"" + row.title + "\" has positions that are not finite");
+    }
+  }
+}
+
+double card_height(const SheetRow& row) {
+  return 2 * kPadding + kTitleHeight + (row.subtitle.empty() ? 0 : kSubtitleHeight) +
+         kFigureHeight + kTimesHeight;
+}
+
+void rounded_rectangle(cairo_t* cairo, double x, double y, double width, double height, double r) {
+  const double quarter = std::acos(0.0);
+  cairo_new_path(cairo);
+  cairo_arc(cairo, x + width - r, y + r, r, -quarter, 0);
+  cairo_arc(cairo, x + width - r, y + height - r, r, 0, quarter);
+  cairo_arc(cairo, x + r, y + height - r, r, quarter, 2 * quarter);
+  cairo_arc(cairo, x + r, y + r, r, 2 * quarter, 3 * quarter);
+  cairo_close_path(cairo);
+}
+
+/// Text from its left baseline, cut with an ellipsis where it is too wide.
+void show_text(cairo_t* cairo, double x, double y, const std::string& text, double size, bool bold,
+               double grey, double max_width) {
+  cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo, size);
+  std::string shown = text;
+  cairo_text_extents_t extents;
+  cairo_text_extents(cairo, shown.c_str(), &extents);
+  std::string kept = text;
+  while (extents.x_advance > max_width && !kept.empty()) {
+    // Whole UTF-8 characters go.
+    do {
+      const bool inside = (static_cast<unsigned char>(kept.back()) & 0xC0) == 0x80;
+      kept.pop_back();
+      if (!inside) break;
+    } while (!kept.empty());
+    shown = kept + "\u2026";
+    cairo_text_extents(cairo, shown.c_str(), &extents);
+  }
+  cairo_set_source_rgb(cairo, grey, grey, grey * 1.08);
+  cairo_move_to(cairo, x, y);
+  cairo_show_text(cairo, shown.c_str());
+}
+
+int frame_of(int pose, int poses, int frames) {
+  return static_cast<int>(std::lround(static_cast<double>(pose) * (frames - 1) / (poses - 1)));
+}
+
+void draw_poses(cairo_t* cairo, const SheetRow& row, const SheetOptions& options, double x,
+                double base, double width) {
+  const Motion& motion = row.motion;
+  double highest = kShownHeight;
+  for (int f = 0; f < motion.frames; ++f) {
+    for (int j = 0; j < motion.joints; ++j) {
+      highest = std::max(highest, motion.position(f, j).y() + 0.2);
+    }
+  }
+  const double cell = width / options.poses;
+  for (int i = 0; i < options.poses; ++i) {
+    const int frame = frame_of(i, options.poses, motion.frames);
+    SheetCamera camera(options.camera_azimuth, options.camera_elevation);
+    camera.centre = motion.position(frame, 0);
+    camera.centre.y() = 0;
+    camera.x = x + cell * (i + 0.5);
+    camera.y = base - 22;
+    camera.pixels_per_metre = std::min(kFigureHeight / (highest + 0.1), cell / 1.25);
+    draw_shadow(cairo, camera, motion, frame, 1);
+    draw_figure(cairo, camera, motion, frame, 1);
+    char time[32];
+    std::snprintf(time, sizeof time, "%.1f s", frame / options.fps);
+    show_text(cairo, camera.x - 15, base + 22, time, 12, false, 0.52, cell);
+  }
+}
+
+void draw_onion(cairo_t* cairo, const SheetRow& row, const SheetOptions& options, double x,
+                double top, double width, double height) {
+  const Motion& motion = row.motion;
+  SheetCamera camera(options.camera_azimuth + 10, options.camera_elevation + 10);
+  Vec3 low(1e9, 0, 1e9), high(-1e9, 0, -1e9);
+  for (int f = 0; f < motion.frames; ++f) {
+    const Vec3 root = motion.position(f, 0);
+    low = low.cwiseMin(Vec3(root.x() - 0.6, 0, root.z() - 0.6));
+    high = high.cwiseMax(Vec3(root.x() + 0.6, 0, root.z() + 0.6));
+  }
+  // Fit what will be drawn: the bodies and the floor under them.
+  camera.pixels_per_metre = 1;
+  Eigen::Vector2d least(1e9, 1e9), most(-1e9, -1e9);
+  const auto include = [&](const Vec3& p) {
+    least = least.cwiseMin(camera.project(p));
+    most = most.cwiseMax(camera.project(p));
+  };
+  for (int f = 0; f < motion.frames; ++f) {
+    for (int j = 0; j < motion.joints; ++j) include(motion.position(f, j));
+  }
+  for (const Vec3& corner : {low, high, Vec3(low.x(), 0, high.z()), Vec3(high.x(), 0, low.z())})
+    include(corner);
+  least.array() -= 0.15;
+  most.array() += 0.1;
+  const double scale =
+      std::min({width / (most.x() - least.x()), height / (most.y() - least.y()), 130.0});
+  camera.pixels_per_metre = scale;
+  camera.x = x + width / 2 - scale * (least.x() + most.x()) / 2;
+  camera.y = top + height / 2 - scale * (least.y() + most.y()) / 2;
+  cairo_save(cairo);
+  cairo_rectangle(cairo, x, top, width, height);
+  cairo_clip(cairo);
+  draw_floor(cairo, camera, low, high, 0.5);
+  draw_root_path(cairo, camera, motion, options.fps);
+  for (int i = 0; i < options.onion_poses; ++i) {
+    const int frame = frame_of(i, options.onion_poses, motion.frames);
+    const double age = static_cast<double>(i) / (options.onion_poses - 1);
+    draw_shadow(cairo, camera, motion, frame, 0.3 + 0.5 * age);
+    draw_figure(cairo, camera, motion, frame, 0.22 + 0.78 * age * age);
+  }
+  cairo_restore(cairo);
+}
+
+void draw_row(cairo_t* cairo, const SheetRow& row, const SheetOptions& options, double y) {
+  const double width = options.width - 2 * kMargin, height = card_height(row);
+  rounded_rectangle(cairo, kMargin, y + 2, width, height, 14);
+  cairo_set_source_rgba(cairo, 0.2, 0.2, 0.3, 0.07);
+  cairo_fill(cairo);
+  rounded_rectangle(cairo, kMargin, y, width, height, 14);
+  cairo_set_source_rgb(cairo, 0.995, 0.992, 0.985);
+  cairo_fill_preserve(cairo);
+  cairo_set_source_rgba(cairo, 0.2, 0.2, 0.3, 0.10);
+  cairo_set_line_width(cairo, 1);
+  cairo_stroke(cairo);
+  const double x = kMargin + kPadding, inner = width - 2 * kPadding;
+  double at = y + kPadding;
+  show_text(cairo, x, at + 18, row.title, 20, true, 0.16, inner);
+  at += kTitleHeight;
+  if (!row.subtitle.empty()) {
+    show_text(cairo, x, at + 10, row.subtitle, 13.5, false, 0.45, inner);
+    at += kSubtitleHeight;
+  }
+  const double onion = options.onion_poses > 0 ? inner * kOnionShare : 0;
+  const double poses = inner - onion - (onion > 0 ? 24 : 0);
+  draw_poses(cairo, row, options, x, at + kFigureHeight, poses);
+  if (onion <= 0) return;
+  cairo_move_to(cairo, x + poses + 12, at);
+  cairo_line_to(cairo, x + poses + 12, y + height - kPadding);
+  cairo_set_source_rgba(cairo, 0.2, 0.2, 0.3, 0.10);
+  cairo_set_line_width(cairo, 1);
+  cairo_stroke(cairo);
+  draw_onion(cairo, row, options, x + poses + 24, at - 14, onion,
+             kFigureHeight + kTimesHeight + 20);
+}
+
+cairo_status_t append_png(void* closure, const unsigned char* data, unsigned int length) {
+  static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+}  // namespace
+
+void write_contact_sheet(const std::string& png_path, const std::vector<SheetRow>& rows,
+                         const SheetOptions& options) {
+  check_sheet(rows, options);
+  const double heading = options.heading.empty() ? 0 : 52;
+  double height = 2 * kMargin + heading - kCardGap;
+  for (const SheetRow& row : rows) height += card_height(row) + kCardGap;
+  const std::unique_ptr<cairo_surface_t, CairoDeleter> surface(cairo_image_surface_create(
+      CAIRO_FORMAT_RGB24, options.width, static_cast<int>(std::ceil(height))));
+  const std::unique_ptr<cairo_t, CairoDeleter> cairo(cairo_create(surface.get()));
+  cairo_set_source_rgb(cairo.get(), 0.955, 0.95, 0.94);
+  cairo_paint(cairo.get());
+  double y = kMargin;
+  if (heading > 0) {
+    show_text(cairo.get(), kMargin + 4, y + 26, options.heading, 27, true, 0.16,
+              options.width - 2 * kMargin);
+    y += heading;
+  }
+  for (const SheetRow& row : rows) {
+    draw_row(cairo.get(), row, options, y);
+    y += card_height(row) + kCardGap;
+  }
+  cairo_surface_flush(surface.get());
+  std::string png;
+  cairo_status_t status = cairo_status(cairo.get());
+  if (status == CAIRO_STATUS_SUCCESS) {
+    status = cairo_surface_write_to_png_stream(surface.get(), append_png, &png);
+  }
+  if (status != CAIRO_STATUS_SUCCESS) {
+    // Cairo's surfaces end at 32767 pixels.
+    throw Error(png_path + ": cannot draw the contact sheet of " + std::to_string(rows.size()) +
+                " rows: " + cairo_status_to_string(status) + "; draw fewer rows on one sheet");
+  }
+  write_file_atomically(png_path, png);
+}
+
+}  // namespace remomask
