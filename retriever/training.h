@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/progress.h"
+#include "db/training_set.h"
+#include "nn/model_file.h"
+#include "nn/trainer.h"
+#include "retriever/config.h"
+
+namespace remomask {
+
+struct RetrieverTrainingOptions {
+  TrainerOptions trainer;
+  int64_t batch = 128;
+  Queues queues = Queues::both;
+  int64_t queue_size = 4096;
+  double momentum = 0.99;
+  double temperature = 0.07;  ///< at the start; it is learnt
+  double part_weight = 0.25;  ///< of the part-level terms
+  double least_crop = 0.7;    ///< shortest random crop, share of the clip
+  double patch_keep = 0.5;    ///< share of the patches that the online encoder sees
+  double word_drop = 0.1;     ///< share of the words hidden from the online text tower
+  int64_t validation_every = 200;
+  /// Defaults of a preset: sizes of queue and run that fit it.
+  explicit RetrieverTrainingOptions(const std::string& preset = "base");
+};
+
+/// Clips of one epoch in batches: no two clips of a group in a batch as long as
+/// the groups last; clips of similar length together, so that a batch has no
+/// easy negatives by length. A function of (seed, epoch). What does not fill a
+/// batch is left out; fewer clips than a batch are one batch.
+std::vector<std::vector<size_t>> epoch_batches(const std::vector<TrainingClip>& clips,
+                                               int64_t batch, uint64_t seed, uint64_t epoch);
+
+/// Trains text tower and motion encoder together by bidirectional momentum
+/// contrast and returns ModelStage "retriever" (online weights averaged over
+/// the run; twins and queues stay in the checkpoint). Clips without captions
+/// are left out. `text_stage`: a pre-trained tower to start from; without one,
+/// a vocabulary is learnt from the captions and the tower starts fresh. Val
+/// figures (R@1, R@10 both ways) go to config["history"]. Throws Error when
+/// nothing can be trained.
+ModelStage train_retriever(const std::vector<TrainingClip>& train,
+                           const std::vector<TrainingClip>& val,
+                           const std::optional<ModelStage>& text_stage, RetrieverConfig config,
+                           const RetrieverTrainingOptions& options, const Monitor& monitor);
+
+}  // namespace remomask
