@@ -6,9 +6,18 @@
 
 namespace remomask {
 
+namespace {
+
+/// Raise it when other positions come out of the same files: the next import
+/// then replaces the clips of older ones.
+constexpr int kReadingVersion = 1;
+
+}  // namespace
+
 std::string MotionSource::options_fingerprint() const {
-  const nlohmann::json decisive = {options_.licence, options_.skeleton_map, options_.min_frames,
-                                   options_.max_frames, options_.window_overlap};
+  const nlohmann::json decisive = {kReadingVersion,       options_.licence,
+                                   options_.skeleton_map, options_.min_frames,
+                                   options_.max_frames,   options_.window_overlap};
   return decisive.dump();
 }
 
