@@ -17,7 +17,7 @@ struct ProceduralParameters {
   int count = 1;                  ///< repetitions, 1 .. 6
   double duration = 4;            ///< seconds, 2 .. 9; kinds with a count derive their own
   std::string style = "neutral";  ///< "neutral", "energetic", "tired" or "old"
-  bool from_stand = true;         ///< locomotion starts and ends standing; else it is cut out
+  bool from_stand = true;         ///< a steady gait starts and ends standing; else that is cut off
   uint64_t variation = 0;         ///< seed of the individual: arm carriage, noise, wording
 };
 

@@ -33,8 +33,9 @@ enum BodyJoint {
   kRightWrist
 };
 
-constexpr double kLegReach = 0.993;  // of the leg's length: a knee is never locked
-constexpr int kSinkWindow = 2;       // frames over which the sinking of the pelvis is spread
+constexpr double kLegReach = 0.993;   // of the leg's length: a knee is never locked
+constexpr double kSteepestFoot = 62;  // degrees of heel lift on the floor
+constexpr int kSinkWindow = 2;        // frames over which the sinking of the pelvis is spread
 
 Quat turn_about(const Vec3& axis, double degrees) {
   return Quat(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis));
@@ -109,12 +110,35 @@ double leg_reach(int side) {
   return kLegReach * (bone_length(kLeftKnee + side) + bone_length(kLeftAnkle + side));
 }
 
+Vec3 hip_position(const BodyPose& pose, int side) {
+  return pose.pelvis + pelvis_rotation(pose) * natural_bone(kLeftHip + side);
+}
+
+/// Lifts the heel of a flat standing foot that the leg is too short for, as a
+/// walker's trailing foot does, as far as that brings the ankle nearer.
+void lift_heel(BodyPose& pose, int side) {
+  FootPose& foot = pose.feet[side];
+  if (!foot.planted || foot.pitch < 0) return;
+  const Vec3 hip = hip_position(pose, side);
+  const auto distance = [&](double pitch) {
+    return (foot.ball + toe_to_ankle(side, foot.yaw, pitch) - hip).norm();
+  };
+  const double reach = leg_reach(side);
+  double low = foot.pitch, high = kSteepestFoot;
+  if (low >= high || distance(low) <= reach || distance(high) >= distance(low)) return;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = (low + high) / 2;
+    (distance(middle) > reach ? low : high) = middle;
+  }
+  foot.pitch = high;
+}
+
 /// How far the pelvis must sink for its planted feet to be reached.
 double needed_sink(const BodyPose& pose) {
   double sink = 0;
   for (int side = 0; side < 2; ++side) {
     if (!pose.feet[side].planted) continue;
-    const Vec3 hip = pose.pelvis + pelvis_rotation(pose) * natural_bone(kLeftHip + side);
+    const Vec3 hip = hip_position(pose, side);
     const Vec3 ankle = ankle_target(pose.feet[side], side);
     const double across = std::hypot(hip.x() - ankle.x(), hip.z() - ankle.z());
     const double reach = leg_reach(side);
@@ -185,7 +209,7 @@ void place_body(const BodyPose& pose, Motion& motion, int frame) {
   Vec3 at = pose.pelvis;
   motion.set(frame, kPelvis, at);
   for (int side = 0; side < 2; ++side) {
-    place_leg(pose, side, at + rotation * natural_bone(kLeftHip + side), motion, frame);
+    place_leg(pose, side, hip_position(pose, side), motion, frame);
   }
   for (int joint : {kSpine1, kSpine2, kSpine3}) {
     at += rotation * natural_bone(joint);
@@ -233,6 +257,9 @@ Vec3 toe_to_ankle(int side, double yaw, double pitch) {
 }
 
 Motion solve_body(std::vector<BodyPose> poses) {
+  for (BodyPose& pose : poses) {
+    for (int side = 0; side < 2; ++side) lift_heel(pose, side);
+  }
   sink_pelvis(poses);
   Motion motion(static_cast<int>(poses.size()), humanml_skeleton().joints());
   for (int f = 0; f < motion.frames; ++f) place_body(poses[f], motion, f);

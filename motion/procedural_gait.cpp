@@ -117,7 +117,8 @@ class Walker {
     for (int k = 0; k < plan_.steps; ++k) {
       GaitStep step;
       step.side = (plan_.first_side + k) % 2;
-      const bool edge = k == 0 || k + 2 >= plan_.steps;
+      // From and into a stand a foot is never in the air together with the other one.
+      const bool edge = k == 0 || k + 1 == plan_.steps;
       const double swing = edge ? std::min(full_swing, 0.9 * plan_.half_period) : full_swing;
       // The body hurries over a lame leg: the other foot lands early.
       const double hurry = step.side == plan_.limp_side ? plan_.limp : -plan_.limp;
@@ -183,7 +184,10 @@ class Walker {
     FootPose foot;
     foot.planted = false;
     const double u = (t - to.lift) / (to.land - to.lift);
-    const double smooth = u * u * (3 - 2 * u);  // slower at its fastest than minimum jerk
+    // The foot is off the floor before it goes forward and above its place before it lands.
+    const double going = std::clamp((u - 0.07) / 0.86, 0.0, 1.0);
+    const double smooth =
+        going * going * (3 - 2 * going);  // slower at its fastest than minimum jerk
     const size_t index =
         static_cast<size_t>(std::find_if(landings_.begin(), landings_.end(),
                                          [&](const GaitStep& s) { return s.land == to.land; }) -

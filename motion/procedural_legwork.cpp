@@ -93,10 +93,10 @@ Poses make_sit(const ProceduralParameters& p, bool stand_up) {
     pose.bend += 12 * leaning + 6 * seated;
     pose.nod -= 16 * leaning;
     ArmPose resting;
-    resting.flex = 32;
+    resting.flex = 15;
     resting.abduct = 6;
     resting.twist = -14;
-    resting.elbow = 62;
+    resting.elbow = 48;
     for (ArmPose& arm : pose.arms) {
       arm = mix(arm, resting, seated);
       arm.flex += 30 * leaning;

@@ -26,7 +26,7 @@ void plan_walk(GaitPlan& plan, double speed) {
 
 void plan_run(GaitPlan& plan, double speed) {
   plan.half_period = 0.36 * std::pow(3.0 / speed, 0.4);
-  plan.duty = std::clamp(0.42 - 0.025 * speed, 0.29, 0.38);
+  plan.duty = std::clamp(0.41 - 0.03 * speed, 0.27, 0.38);
   plan.clearance = 0.10 + 0.05 * speed;
   plan.heel = std::min(58 + 5 * speed, 80.0);
   plan.toe = 6;
@@ -134,7 +134,7 @@ Poses make_gait(const ProceduralParameters& p, GaitKind kind, ActionSide which) 
       break;
     case GaitKind::march:
       plan.half_period = 0.52;
-      plan.clearance = 0.34 * p.amplitude;
+      plan.clearance = 0.42 * p.amplitude;
       plan.heel = 34;
       plan.arm_swing = 40 * p.amplitude;
       plan.elbow = 30;
@@ -160,7 +160,7 @@ Poses make_gait(const ProceduralParameters& p, GaitKind kind, ActionSide which) 
     // The obstacle lies in the middle; both feet clear it one after the other.
     const int high = plan.steps / 2;
     plan.extra_clearance = [=](int step) {
-      return step == high || step == high + 1 ? 0.30 * p.amplitude : 0.0;
+      return step == high || step == high + 1 ? 0.36 * p.amplitude : 0.0;
     };
   }
   const PathRamp ramp = ramp_of(plan);
@@ -200,7 +200,10 @@ Poses make_gait(const ProceduralParameters& p, GaitKind kind, ActionSide which) 
       pose.look += std::clamp(plan.velocity(t).turn * 0.18, -16.0, 16.0);
     }
   }
-  if (!p.from_stand) {
+  const bool steady_gait = kind != GaitKind::circle && kind != GaitKind::step_over &&
+                           kind != GaitKind::stop && kind != GaitKind::turn_after &&
+                           kind != GaitKind::wave_after;  // the others tell a whole story
+  if (!p.from_stand && steady_gait) {
     const int first = static_cast<int>(std::ceil((ramp.from + ramp.ramp) * 20));
     const int last = static_cast<int>((ramp.to - ramp.ramp) * 20);
     if (last - first >= 40) return Poses(poses.begin() + first, poses.begin() + last);

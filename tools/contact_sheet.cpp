@@ -105,7 +105,7 @@ void draw_poses(cairo_t* cairo, const SheetRow& row, const SheetOptions& options
     camera.centre.y() = 0;
     camera.x = x + cell * (i + 0.5);
     camera.y = base - 22;
-    camera.pixels_per_metre = std::min(kFigureHeight / (highest + 0.1), cell / 1.25);
+    camera.pixels_per_metre = std::min(kFigureHeight / (highest + 0.1), cell / 1.0);
     draw_shadow(cairo, camera, motion, frame, 1);
     draw_figure(cairo, camera, motion, frame, 1);
     char time[32];
@@ -151,7 +151,12 @@ void draw_onion(cairo_t* cairo, const SheetRow& row, const SheetOptions& options
   for (int i = 0; i < options.onion_poses; ++i) {
     const int frame = frame_of(i, options.onion_poses, motion.frames);
     const double age = static_cast<double>(i) / (options.onion_poses - 1);
-    draw_shadow(cairo, camera, motion, frame, 0.3 + 0.5 * age);
+    // Shadows in one place would add up to black.
+    const bool moved_on = i + 1 == options.onion_poses ||
+                          (motion.position(frame, 0) -
+                           motion.position(frame_of(i + 1, options.onion_poses, motion.frames), 0))
+                                  .norm() > 0.3;
+    if (moved_on) draw_shadow(cairo, camera, motion, frame, 0.4 + 0.5 * age);
     draw_figure(cairo, camera, motion, frame, 0.22 + 0.78 * age * age);
   }
   cairo_restore(cairo);

@@ -15,12 +15,11 @@ struct SheetRow {
 };
 
 struct SheetOptions {
-  std::string heading;  ///< above all rows; may be empty
-  int poses = 9;        ///< side by side in a row, 2 .. 24
-  int onion_poses = 7;  ///< in the strip where the body moves through space; 0: no strip
-  int width = 1800;     ///< pixels
-  double camera_azimuth =
-      -52;  ///< degrees around +Y from the front; walking to +Z goes to the right
+  std::string heading;          ///< above all rows; may be empty
+  int poses = 9;                ///< side by side in a row, 2 .. 24
+  int onion_poses = 7;          ///< in the strip where the body moves through space; 0: no strip
+  int width = 1800;             ///< pixels
+  double camera_azimuth = -46;  ///< degrees around +Y from the front; +Z goes to the right
   double camera_elevation = 14;
   double fps = 20;
 };

@@ -29,6 +29,7 @@ constexpr Limb kLimbs[] = {
     {17, 19, 0.046, 0.036}, {19, 21, 0.035, 0.025},                         // right arm
     {12, 15, 0.045, 0.045},                                                 // neck
 };
+constexpr int kNeckLimb = 10;
 constexpr int kTrunkOutline[] = {16, 17, 2, 1};
 
 Colour limb_colour(int joint) {
@@ -149,6 +150,10 @@ void draw_figure(cairo_t* cairo, const SheetCamera& camera, const Motion& motion
                        camera.depth(motion.position(frame, limb.to))) /
                           2,
                       i});
+  }
+  // The neck lies within head and trunk from every side: drawn before both.
+  for (Piece& piece : pieces) {
+    if (piece.limb == kNeckLimb) piece.depth = std::min(pieces[0].depth, pieces[1].depth) - 0.01;
   }
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const Piece& a, const Piece& b) { return a.depth < b.depth; });
