@@ -70,7 +70,9 @@ TextEncoder::TextEncoder(const TextEncoderConfig& config)
       positions_(register_module("positions", nn::Embedding(config.max_tokens, config.width))),
       stack_(register_module("stack", EncoderStack(config.layers, config.width, config.heads,
                                                    config.hidden, config.dropout))) {
-  initialise_transformer_weights(*this);
+  initialise_transformer_weights(*tokens_);
+  initialise_transformer_weights(*positions_);
+  initialise_transformer_weights(*stack_);
 }
 
 nlohmann::json TextEncoder::config() const { return config_; }
