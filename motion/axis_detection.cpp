@@ -28,7 +28,7 @@ Vec3 long_axis(const Motion& motion) {
 char detect_up_axis(const Motion& raw, const Motion* rest_pose) {
   const Vec3 clip = long_axis(raw);
   const Vec3 rest = rest_pose ? long_axis(*rest_pose) : Vec3::Zero();
-  const Vec3 score = clip + 0.5 * rest + Vec3(0, 0.4, 0);
+  const Vec3 score = clip + 0.8 * rest + Vec3(0, 0.4, 0);
   int best = 1;
   for (int axis = 0; axis < 3; ++axis) {
     if (score[axis] > score[best]) best = axis;

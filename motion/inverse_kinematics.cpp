@@ -11,7 +11,7 @@ namespace remomask {
 namespace {
 
 constexpr double kRigidMetres = 0.0005;
-constexpr int kPelvis = 0, kSpine1 = 3, kSpine2 = 6, kSpine3 = 9;
+constexpr int kIkPelvis = 0, kIkSpine1 = 3, kIkSpine2 = 6, kIkSpine3 = 9;
 
 /// T-pose offsets in the proportions of the human body, metres; only the
 /// directions matter, lengths come from the motion.
@@ -103,16 +103,17 @@ std::vector<Vec3> fit_rest_offsets(const Motion& motion, const Skeleton& skeleto
 /// Turns the spine bones about themselves, by a third and two thirds of the
 /// twist between pelvis and spine3; no joint moves.
 void spread_spine_twist(const std::vector<Vec3>& rest, Quat* world) {
-  const Quat relative = world[kSpine2].conjugate() * world[kSpine3];
-  const Vec3 axis = rest[kSpine3].normalized();
+  const Quat relative = world[kIkSpine2].conjugate() * world[kIkSpine3];
+  const Vec3 axis = rest[kIkSpine3].normalized();
   double w = relative.w(), along = relative.vec().dot(axis);
   if (w < 0) {
     w = -w;
     along = -along;
   }
   const double twist = 2 * std::atan2(along, w);
-  world[kSpine1] = world[kSpine1] * Quat(Eigen::AngleAxisd(twist / 3, rest[kSpine2].normalized()));
-  world[kSpine2] = world[kSpine2] * Quat(Eigen::AngleAxisd(twist * 2 / 3, axis));
+  world[kIkSpine1] =
+      world[kIkSpine1] * Quat(Eigen::AngleAxisd(twist / 3, rest[kIkSpine2].normalized()));
+  world[kIkSpine2] = world[kIkSpine2] * Quat(Eigen::AngleAxisd(twist * 2 / 3, axis));
 }
 
 /// Children of joints with several children.
@@ -223,7 +224,7 @@ Pose22 solve_pose(const Motion& motion) {
   pose.rest_offsets = fit_rest_offsets(motion, skeleton, children);
   const std::vector<bool> free = free_joints(children);
   for (int t = 0; t < motion.frames; ++t) {
-    pose.root.push_back(motion.position(t, kPelvis));
+    pose.root.push_back(motion.position(t, kIkPelvis));
     const std::vector<Quat> world = solve_frame(motion, t, pose.rest_offsets, children, free);
     for (int j = 0; j < joints; ++j) {
       const int parent = skeleton.parents[j];
@@ -253,10 +254,10 @@ Bvh motion_to_bvh(const Motion& motion) {
     BvhJoint joint;
     joint.name = bvh_names()[j];
     const auto parent = std::find(order.begin(), order.end(), skeleton.parents[j]);
-    joint.parent = j == kPelvis ? -1 : static_cast<int>(parent - order.begin());
+    joint.parent = j == kIkPelvis ? -1 : static_cast<int>(parent - order.begin());
     joint.offset = pose.rest_offsets[j] * 100;
     joint.first_channel = bvh.channels;
-    if (j == kPelvis || (!pose.rigid && free[j])) joint.channels = {0, 1, 2};
+    if (j == kIkPelvis || (!pose.rigid && free[j])) joint.channels = {0, 1, 2};
     joint.channels.insert(joint.channels.end(), {5, 4, 3});
     if (children[j].empty()) joint.end_site = end_site_offset(j);
     bvh.channels += static_cast<int>(joint.channels.size());
@@ -268,7 +269,7 @@ Bvh motion_to_bvh(const Motion& motion) {
       const int j = order[k];
       const size_t at = static_cast<size_t>(t) * order.size() + j;
       if (bvh.joints[k].channels.size() == 6) {
-        const Vec3& position = j == kPelvis ? pose.root[t] : pose.translations[at];
+        const Vec3& position = j == kIkPelvis ? pose.root[t] : pose.translations[at];
         for (int axis = 0; axis < 3; ++axis) {
           bvh.values.push_back(static_cast<float>(position[axis] * 100));
         }

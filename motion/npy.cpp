@@ -114,8 +114,10 @@ NpyArray parse_npy(std::string_view content, const std::string& path) {
   const size_t there = (content.size() - header.data_start) / bytes;
   size_t count = 1;
   for (const size_t extent : array.shape) {
-    if (extent != 0 && count > there / extent) count = there + 1;
-    if (count > there) break;
+    if (extent != 0 && count > there / extent) {
+      count = there + 1;
+      break;
+    }
     count *= extent;
   }
   if (count > there) {
