@@ -1,0 +1,56 @@
+#include "evaluation/label_prompts.h"
+
+#include <map>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "db/training_set.h"
+
+namespace remomask {
+
+namespace {
+
+/// Clips of one content in the order in which they are taken.
+struct ContentClips {
+  std::vector<const Clip*> clips;
+  size_t taken = 0;
+};
+
+}  // namespace
+
+std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
+                                              const std::string& split, int count, uint64_t seed) {
+  std::map<std::string, std::vector<const Clip*>> by_content;
+  for (const Clip& clip : clips) {
+    if (clip.split != split || clip.mirrored || clip.captions.empty()) continue;
+    if (const std::string content = clip_content(clip); !content.empty()) {
+      by_content[content].push_back(&clip);
+    }
+  }
+  if (by_content.empty()) {
+    throw Error("no clip of the split '" + split +
+                "' has both a caption and a content label; choose another split");
+  }
+  std::vector<std::pair<std::string, ContentClips>> turns;
+  for (const auto& [content, members] : by_content) {
+    ContentClips ordered;
+    CounterRandom random(seed, turns.size());
+    for (const size_t i : random.permutation(members.size())) ordered.clips.push_back(members[i]);
+    turns.emplace_back(content, std::move(ordered));
+  }
+  std::vector<LabelPrompt> prompts;
+  for (int i = 0; i < count; ++i) {
+    auto& [content, source] = turns[static_cast<size_t>(i) % turns.size()];
+    const Clip& clip = *source.clips[source.taken % source.clips.size()];
+    const size_t round = source.taken / source.clips.size();
+    ++source.taken;
+    const size_t first = CounterRandom(mix_seed(seed, static_cast<uint64_t>(clip.id), 1))
+                             .below(clip.captions.size());
+    prompts.push_back({clip.id, clip.name, clip.group,
+                       clip.captions[(first + round) % clip.captions.size()], content, clip.frames,
+                       mix_seed(seed, static_cast<uint64_t>(i), 2)});
+  }
+  return prompts;
+}
+
+}  // namespace remomask

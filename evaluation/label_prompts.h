@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "db/database.h"
+
+namespace remomask {
+
+/// One text to generate from, with the clip that it was written for.
+struct LabelPrompt {
+  int64_t clip_id = 0;
+  std::string clip;     ///< its name
+  std::string group;    ///< Clip::group of that clip
+  std::string text;     ///< one of its captions
+  std::string content;  ///< clip_content of that clip
+  int frames = 0;       ///< of that clip, for generators that want the true length
+  uint64_t seed = 0;    ///< for the generation
+};
+
+/// `count` prompts from the clips of `split`, spread over the contents: in turn
+/// through the contents (alphabetical), each giving its clips in random order;
+/// clips come again, with another caption where they have one, when all were
+/// taken. Mirror copies and clips without content or caption are left out. A
+/// function of the arguments alone. Throws Error when no clip is left.
+std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
+                                              const std::string& split, int count, uint64_t seed);
+
+}  // namespace remomask
