@@ -77,11 +77,11 @@ Poses make_point(const ProceduralParameters& p, ActionSide which) {
   return make_poses(p.duration, [&](double t, BodyPose& pose) {
     ArmPose pointing;
     pointing.flex = 86 + 4 * p.amplitude;
-    pointing.across = 4;
+    pointing.across = -5;
     pointing.elbow = 4;
     const double weight = pulse(t, 0.3, p.duration - 0.3, 0.7);
     pose.arms[side] = mix(pose.arms[side], pointing, weight);
-    pose.twist -= 8 * weight * side_sign(side) * -1;
+    pose.twist -= 8 * weight * side_sign(side);  // the shoulder goes along
     pose.look -= pose.twist;
   });
 }
@@ -96,8 +96,8 @@ Poses make_clap(const ProceduralParameters& p) {
     ArmPose ready;
     ready.flex = 42;
     ready.abduct = 8;
-    ready.twist = -34 - 14 * closed + 16 * p.amplitude * (1 - closed);
-    ready.across = 6 + 4 * closed;
+    ready.twist = -31 * closed + 10 * p.amplitude * (1 - closed);
+    ready.across = 2 + 6 * closed;
     ready.elbow = 72;
     const double weight = pulse(t, 0.1, duration - 0.1, 0.75);
     for (ArmPose& arm : pose.arms) arm = mix(arm, ready, weight);
@@ -118,10 +118,10 @@ Poses make_throw(const ProceduralParameters& p, ActionSide which) {
     drawn.elbow = 105;
     drawn.across = -15;
     thrown.flex = 118;
-    thrown.across = 10;
+    thrown.across = -22;  // forward in spite of the turned chest
     thrown.elbow = 14;
     low.flex = 42;
-    low.across = 38;
+    low.across = 22;
     low.elbow = 28;
     ArmPose arm = mix(pose.arms[side], drawn, ease(t, wind, back));
     arm = mix(arm, thrown, ease(t, back, release));
@@ -135,7 +135,7 @@ Poses make_throw(const ProceduralParameters& p, ActionSide which) {
     const double drawn_back = ease(t, wind, back) - ease(t, back, release);
     const double forward = ease(t, back, release) - ease(t, through, duration - 0.1);
     pose.twist += s * p.amplitude * (34 * drawn_back - 26 * forward);
-    pose.yaw += -s * 8 * drawn_back + s * 10 * forward;
+    pose.yaw += s * (8 * drawn_back - 10 * forward);
     pose.bend += -8 * drawn_back + 16 * p.amplitude * forward;
     pose.pelvis.z() += -0.07 * drawn_back + 0.09 * forward;
     pose.look -= pose.twist;
@@ -224,7 +224,7 @@ Poses make_punch(const ProceduralParameters& p, ActionSide which, bool alternate
     const double out = ease(rep.phase, 0.05, 0.38) - ease(rep.phase, 0.46, 0.98);
     ArmPose punch;
     punch.flex = 86;
-    punch.across = 14;
+    punch.across = 2 - 26 * p.amplitude;  // forward in spite of the turned chest
     punch.twist = -45;
     punch.elbow = 7;
     pose.arms[side] = mix(pose.arms[side], punch, out);

@@ -176,7 +176,7 @@ Poses make_jump(const ProceduralParameters& p, double height, double distance) {
 
 Poses make_jumping_jacks(const ProceduralParameters& p) {
   const double half = 0.5 / style_tempo(p.style), start = 0.4;
-  const double duration = start + p.count * 2 * half + 0.5;
+  const double duration = start + p.count * 2 * half + 0.65;
   return make_poses(duration, [&](double t, BodyPose& pose) {
     const Repetition rep = repetition(t, start, half, 2 * p.count);
     const bool closing = rep.index % 2 == 1;

@@ -37,7 +37,7 @@ void plan_run(GaitPlan& plan, double speed) {
   plan.arm_swing = 26 + 6 * speed;
   plan.elbow = 86;
   plan.elbow_swing = 10;
-  plan.bend = 7 + 2 * speed;
+  plan.bend = 6 + 1.4 * speed;
 }
 
 void fit_steps(GaitPlan& plan) {
@@ -160,7 +160,7 @@ Poses make_gait(const ProceduralParameters& p, GaitKind kind, ActionSide which) 
     // The obstacle lies in the middle; both feet clear it one after the other.
     const int high = plan.steps / 2;
     plan.extra_clearance = [=](int step) {
-      return step == high || step == high + 1 ? 0.36 * p.amplitude : 0.0;
+      return step == high || step == high + 1 ? 0.47 * p.amplitude : 0.0;
     };
   }
   const PathRamp ramp = ramp_of(plan);
