@@ -18,13 +18,14 @@ at::Tensor contrast_loss(const at::Tensor& queries, const at::Tensor& keys, cons
   constexpr float kNever = -std::numeric_limits<float>::infinity();
   const int64_t count = queries.size(0);
   const auto own = torch::eye(count, ignore_batch.options());
-  at::Tensor logits = torch::matmul(queries, keys.t())
+  // Scaled before the infinities come in: 0 x infinity would be the gradient of the scale.
+  at::Tensor logits = (torch::matmul(queries, keys.t()) * scale)
                           .masked_fill(ignore_batch.logical_and(own.logical_not()), kNever);
   if (queue.defined()) {
     logits = torch::cat(
-        {logits, torch::matmul(queries, queue.t()).masked_fill(ignore_queue, kNever)}, 1);
+        {logits, (torch::matmul(queries, queue.t()) * scale).masked_fill(ignore_queue, kNever)}, 1);
   }
-  return torch::cross_entropy_loss(logits * scale, torch::arange(count, torch::kLong));
+  return torch::cross_entropy_loss(logits, torch::arange(count, torch::kLong));
 }
 
 }  // namespace remomask
