@@ -1,0 +1,123 @@
+#include "generator/masked_transformer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "condition_test_tools.h"
+
+namespace remomask {
+namespace {
+
+/// A model whose retrieval path has an effect.
+MaskedTransformer stirred_masked_model(const MaskedConfig& config) {
+  torch::manual_seed(11);
+  MaskedTransformer model(config);
+  randomise_parameters(*model, 0.2);
+  model->eval();
+  return model;
+}
+
+TEST(MaskedTransformer, AloneEqualsPaddedBatch) {
+  const torch::NoGradGuard no_grad;
+  const MaskedConfig config = small_masked_config();
+  auto model = stirred_masked_model(config);
+  const std::vector<int64_t> lengths = {3, 7, 5};
+  auto tokens = torch::randint(config.codes + 1, {3, 7, 3}, torch::kLong);
+  auto frame_mask = torch::zeros({3, 7}, torch::kBool);
+  Condition condition = random_condition(3, 6, 2, 12, 8);
+  condition.text_mask[1].slice(0, 2, 6).fill_(false);
+  condition.hit_mask[2][1] = false;
+  for (int64_t i = 0; i < 3; ++i) frame_mask[i].slice(0, 0, lengths[i]).fill_(true);
+  const auto together = model->forward(tokens, model->prepare(condition), frame_mask);
+  for (int64_t i = 0; i < 3; ++i) {
+    Condition one = select_condition(condition, torch::tensor({i}));
+    if (i == 1) {  // alone, its text has no padding either
+      one.text_states = one.text_states.slice(1, 0, 2);
+      one.text_mask = one.text_mask.slice(1, 0, 2);
+    }
+    const auto alone =
+        model->forward(tokens[i].slice(0, 0, lengths[i]).unsqueeze(0), model->prepare(one));
+    const auto part = together[i].slice(0, 0, lengths[i] * 3);
+    EXPECT_LT((alone[0] - part).abs().max().item<float>(), 1e-4f) << "sample " << i;
+  }
+}
+
+TEST(MaskedTransformer, NullTokensReplaceWhatIsOff) {
+  const torch::NoGradGuard no_grad;
+  const MaskedConfig config = small_masked_config();
+  auto model = stirred_masked_model(config);
+  const auto tokens = torch::randint(config.codes, {1, 4, 3}, torch::kLong);
+  const auto logits = [&](const Condition& c) { return model->forward(tokens, model->prepare(c)); };
+  const Condition first = random_condition(1, 4, 2, 12, 8);
+  Condition other_hits = random_condition(1, 4, 2, 12, 8);
+  other_hits.text_states = first.text_states;
+  other_hits.text_query = first.text_query;
+  Condition other_text = random_condition(1, 4, 2, 12, 8);
+  other_text.hit_motion = first.hit_motion;
+  other_text.hit_text = first.hit_text;
+  other_text.hit_similarity = first.hit_similarity;
+  const auto differ = [&](const Condition& a, const Condition& b) {
+    return (logits(a) - logits(b)).abs().max().item<float>();
+  };
+  EXPECT_GT(differ(first, other_hits), 1e-3f);
+  EXPECT_GT(differ(first, other_text), 1e-3f);
+  const auto without = [](Condition c, bool text, bool retrieval) {
+    if (text) c.use_text = torch::zeros_like(c.use_text);
+    if (retrieval) c.use_retrieval = torch::zeros_like(c.use_retrieval);
+    return c;
+  };
+  EXPECT_EQ(differ(without(first, false, true), without(other_hits, false, true)), 0.f);
+  EXPECT_EQ(differ(without(first, true, false), without(other_text, true, false)), 0.f);
+  EXPECT_GT(differ(without(first, true, false), first), 1e-3f);
+  // Retrieval off is the same as no hit found, and as a condition without any hit row.
+  Condition no_hit = first;
+  no_hit.hit_mask = torch::zeros_like(no_hit.hit_mask);
+  EXPECT_EQ(differ(without(first, false, true), no_hit), 0.f);
+  Condition empty = first;
+  empty.hit_motion = empty.hit_motion.slice(1, 0, 0);
+  empty.hit_text = empty.hit_text.slice(1, 0, 0);
+  empty.hit_similarity = empty.hit_similarity.slice(1, 0, 0);
+  empty.hit_mask = empty.hit_mask.slice(1, 0, 0);
+  EXPECT_LT(differ(no_hit, empty), 1e-4f);
+}
+
+TEST(MaskedTransformer, OneRowWithoutRetrievalWorks) {
+  MaskedConfig config = small_masked_config();
+  config.rows = 1;
+  config.max_hits = 0;
+  auto model = stirred_masked_model(config);
+  const auto out = model->forward(torch::zeros({2, 5, 1}, torch::kLong),
+                                  model->prepare(random_condition(2, 3, 0, 12, 8)));
+  EXPECT_EQ(out.sizes(), (std::vector<int64_t>{2, 5, 16}));
+}
+
+TEST(MaskedTransformer, LossEqualsHandComputedCrossEntropy) {
+  const auto logits = torch::tensor({1.f, 2.f, 0.f, 0.f, 0.f, 3.f}).reshape({1, 2, 3});
+  const auto targets = torch::tensor({1, 0}, torch::kLong).reshape({1, 2, 1});
+  const double first = -2 + std::log(std::exp(1) + std::exp(2) + 1);
+  const double second = std::log(1 + 1 + std::exp(3));
+  const TokenLoss both = token_loss(logits, targets);
+  EXPECT_NEAR(both.loss.item<double>(), (first + second) / 2, 1e-6);
+  EXPECT_EQ(both.accuracy, 0.5);
+  const TokenLoss one = token_loss(logits, torch::tensor({-1, 0}, torch::kLong).reshape({1, 2, 1}));
+  EXPECT_NEAR(one.loss.item<double>(), second, 1e-6);
+  EXPECT_EQ(one.targets, 1);
+  EXPECT_EQ(token_loss(logits, torch::full({1, 2, 1}, -1, torch::kLong)).loss.item<double>(), 0);
+}
+
+TEST(MaskedTransformer, SaveAndLoadAreExact) {
+  auto model = stirred_masked_model(small_masked_config());
+  auto loaded = load_masked(masked_stage(model));
+  const auto tokens = torch::randint(16, {1, 4, 3}, torch::kLong);
+  const Condition condition = random_condition(1, 4, 2, 12, 8);
+  EXPECT_TRUE(torch::equal(model->forward(tokens, model->prepare(condition)),
+                           loaded->forward(tokens, loaded->prepare(condition))));
+  ModelStage stage = masked_stage(model);
+  stage.kind = "tokenizer";
+  EXPECT_THROW(load_masked(stage), Error);
+}
+
+}  // namespace
+}  // namespace remomask
