@@ -1,0 +1,62 @@
+#include <gtest/gtest.h>
+#include <torch/utils.h>
+
+#include "retriever/retrieval_metrics.h"
+#include "retriever_test_tools.h"
+
+namespace remomask {
+namespace {
+
+TEST(RetrievalMetrics, RanksByHand) {
+  const auto similarity = torch::tensor({0.9f, 0.8f, 0.7f, 0.1f,   // best correct is third
+                                         0.5f, 0.5f, 0.5f, 0.2f,   // two wrong ties
+                                         0.1f, 0.2f, 0.3f, 0.4f,   // first
+                                         0.4f, 0.3f, 0.2f, 0.1f})  // two correct: better counts
+                              .view({4, 4});
+  const auto correct = torch::tensor({0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 1}, torch::kInt)
+                           .view({4, 4})
+                           .to(torch::kBool);
+  EXPECT_EQ(best_ranks(similarity, correct), (std::vector<double>{3, 2, 1, 2}));
+}
+
+TEST(RetrievalMetrics, RecallAndMedianByHand) {
+  const RecallFigures figures = recall_figures({1, 1.5, 2, 4, 11, 6}, 20);
+  EXPECT_DOUBLE_EQ(figures.recall[0], 100.0 / 6);      // 1
+  EXPECT_DOUBLE_EQ(figures.recall[1], 100.0 * 3 / 6);  // 1, 1.5, 2
+  EXPECT_DOUBLE_EQ(figures.recall[2], 100.0 * 3 / 6);
+  EXPECT_DOUBLE_EQ(figures.recall[3], 100.0 * 4 / 6);
+  EXPECT_DOUBLE_EQ(figures.recall[4], 100.0 * 5 / 6);
+  EXPECT_DOUBLE_EQ(figures.median_rank, 3);
+  EXPECT_EQ(figures.queries, 6);
+  EXPECT_EQ(figures.gallery, 20);
+}
+
+TEST(RetrievalMetrics, ConstantSimilarityIsChance) {
+  const auto ranks = best_ranks(torch::zeros({5, 5}), torch::eye(5).to(torch::kBool));
+  for (const double rank : ranks) EXPECT_DOUBLE_EQ(rank, 3);
+}
+
+TEST(RetrievalMetrics, SameCaptionAndSameGroupAreCorrectAndSubsetsKeepTheGallery) {
+  std::vector<TrainingClip> clips(4);
+  const std::vector<std::string> captions = {"A man walks.", "a man walks", "she jumps", "he runs"};
+  for (size_t i = 0; i < 4; ++i) {
+    clips[i].group = i == 3 ? 2 : static_cast<int>(i);
+    clips[i].captions = {captions[i]};
+    clips[i].unseen = i < 2 ? "take" : "pair";
+  }
+  // Text i is nearest to motion i + 1 (mod 4): right for 0 and 2 alone.
+  const auto text = torch::eye(4), motion = torch::eye(4).roll(1, 0);
+  const auto evaluation =
+      evaluate_vectors(text, motion.t().contiguous(), captions, {0, 1, 2, 3}, clips, false);
+  ASSERT_EQ(evaluation.subsets.size(), 3u);
+  EXPECT_EQ(evaluation.subsets[0].name, "all");
+  EXPECT_DOUBLE_EQ(evaluation.subsets[0].text_to_motion.recall[0], 50);
+  EXPECT_EQ(evaluation.subsets[1].name, "take");
+  EXPECT_EQ(evaluation.subsets[1].text_to_motion.queries, 2);
+  EXPECT_EQ(evaluation.subsets[1].text_to_motion.gallery, 4);
+  EXPECT_EQ(evaluation.subsets[2].motion_to_text.queries, 2);
+  EXPECT_NE(evaluation.protocol.find("full gallery"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace remomask

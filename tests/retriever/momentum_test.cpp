@@ -1,0 +1,123 @@
+#include "retriever/momentum.h"
+
+#include <gtest/gtest.h>
+#include <torch/utils.h>
+
+#include "retriever_test_tools.h"
+
+namespace remomask {
+namespace {
+
+PairBatch batch_of(const std::vector<TrainingClip>& clips, RetrieverModel& model) {
+  std::vector<std::string> captions;
+  std::vector<MotionCrop> crops;
+  std::vector<int64_t> groups;
+  for (const TrainingClip& clip : clips) {
+    captions.push_back(clip.captions.front());
+    crops.push_back(whole_clip(clip.features));
+    groups.push_back(clip.group);
+  }
+  const PatchBatch patches = model.motion_encoder().patches(crops);
+  return {model.text_tower().tokenize(captions),
+          patches,
+          patches,
+          {torch::tensor(groups), torch::tensor(groups)}};
+}
+
+PairIdentity numbers(int64_t first, int64_t count) {
+  const auto values = torch::arange(first, first + count, torch::kLong);
+  return {values, values + 100};
+}
+
+TEST(KeyQueue, WrapsAroundAndCountsOnlyWhatWasPushed) {
+  KeyQueue queue(4, 1);
+  EXPECT_EQ(queue.filled(), 0);
+  queue.push(torch::tensor({{1.f}, {2.f}, {3.f}}), numbers(1, 3));
+  EXPECT_EQ(queue.filled(), 3);
+  EXPECT_TRUE(queue.keys().equal(torch::tensor({{1.f}, {2.f}, {3.f}})));
+  queue.push(torch::tensor({{4.f}, {5.f}, {6.f}}), numbers(4, 3));
+  EXPECT_TRUE(queue.keys().equal(torch::tensor({{5.f}, {6.f}, {3.f}, {4.f}})));
+  EXPECT_TRUE(queue.identity().group.equal(torch::tensor({5L, 6L, 3L, 4L})));
+  EXPECT_TRUE(queue.identity().caption.equal(torch::tensor({105L, 106L, 103L, 104L})));
+}
+
+TEST(KeyQueue, MoreKeysThanEntriesKeepTheLast) {
+  KeyQueue queue(2, 1);
+  queue.push(torch::tensor({{1.f}, {2.f}, {3.f}, {4.f}, {5.f}}), numbers(1, 5));
+  EXPECT_TRUE(queue.keys().equal(torch::tensor({{5.f}, {4.f}})));
+}
+
+TEST(Momentum, TwinFollowsByHand) {
+  torch::nn::Linear twin(1, 1), online(1, 1);
+  at::NoGradGuard no_grad;
+  twin->weight.fill_(1);
+  online->weight.fill_(3);
+  update_twin(*twin, *online, 0.9);
+  EXPECT_NEAR(twin->weight.item<double>(), 1.2, 1e-6);
+  update_twin(*twin, *online, 0.9);
+  EXPECT_NEAR(twin->weight.item<double>(), 1.38, 1e-6);
+}
+
+TEST(Bmm, KeysHaveNoDropoutNoGradientAndMoveAfterTheStep) {
+  torch::manual_seed(1);
+  RetrieverConfig config = tiny_retriever_config();
+  config.dropout = 0.5;
+  BmmModel model(config, Queues::both, 8, 0.5, 0.07);
+  model.train();
+  const auto clips = separable_clips(3, 1, 1);
+  const PairBatch batch = batch_of(clips, model.online());
+  const auto first = model.keys(batch), second = model.keys(batch);
+  EXPECT_TRUE(first.first.equal(second.first));
+  EXPECT_TRUE(first.second.equal(second.second));
+  EXPECT_FALSE(first.first.requires_grad());
+  // The online model has dropout in training.
+  const auto one = model.online().motion_encoder().forward(batch.online_patches).global;
+  const auto two = model.online().motion_encoder().forward(batch.online_patches).global;
+  EXPECT_FALSE(one.equal(two));
+
+  const BmmLosses losses = model.loss(batch, 0.25, 0.1);
+  losses.total.backward();
+  for (const auto& value : model.twin().parameters()) EXPECT_FALSE(value.grad().defined());
+  for (const auto& item : model.online().named_parameters()) {
+    EXPECT_TRUE(item.value().grad().defined()) << item.key();
+  }
+  EXPECT_EQ(model.text_queue().filled(), 0);
+  model.after_step();
+  EXPECT_EQ(model.text_queue().filled(), 3);
+  EXPECT_TRUE(model.text_queue().keys().equal(first.first));
+  EXPECT_TRUE(model.motion_queue().keys().equal(first.second));
+}
+
+TEST(Bmm, LossIsTheMeanOfBothDirectionsWithEachItsQueue) {
+  torch::manual_seed(2);
+  const auto clips = separable_clips(6, 1, 1);
+  const std::vector<TrainingClip> older(clips.begin(), clips.begin() + 3),
+      newer(clips.begin() + 2, clips.end());
+  for (const Queues queues : {Queues::none, Queues::motion, Queues::text, Queues::both}) {
+    BmmModel model(tiny_retriever_config(), queues, 8, 1.0, 0.1);
+    model.eval();
+    model.loss(batch_of(older, model.online()), 0, 0);
+    model.after_step();
+    const PairBatch batch = batch_of(newer, model.online());
+    const auto [text, motion] = model.keys(batch);  // twin and online are equal still
+    const auto ignore = same_pairs(batch.identity, batch.identity);
+    const auto expected = [&](const at::Tensor& queries, const at::Tensor& keys,
+                              const KeyQueue& queue, bool used) {
+      if (!used) return contrast_loss(queries, keys, {}, ignore, {}, model.scale());
+      const auto stale = same_pairs(batch.identity, queue.identity());
+      EXPECT_EQ(stale.sum().item<int64_t>(), 1);  // clip 2 meets itself
+      return contrast_loss(queries, keys, queue.keys(), ignore, stale, model.scale());
+    };
+    const bool with_text = queues == Queues::text || queues == Queues::both;
+    const bool with_motion = queues == Queues::motion || queues == Queues::both;
+    const double m2t = expected(motion, text, model.text_queue(), with_text).item<double>();
+    const double t2m = expected(text, motion, model.motion_queue(), with_motion).item<double>();
+    const BmmLosses losses = model.loss(batch, 0, 0);
+    EXPECT_NEAR(losses.motion_to_text, m2t, 1e-5) << queues_name(queues);
+    EXPECT_NEAR(losses.text_to_motion, t2m, 1e-5) << queues_name(queues);
+    EXPECT_NEAR(losses.total.item<double>(), (m2t + t2m) / 2, 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace remomask

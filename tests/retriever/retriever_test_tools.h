@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "db/training_set.h"
+#include "retriever/config.h"
+
+namespace remomask {
+
+/// Noise of the given length; the same for the same seed.
+Features random_features(int frames, uint64_t seed);
+
+/// `kinds` kinds of motion (a constant pattern each, with noise), each with its
+/// own words, `repeats` clips a kind; every clip is a group of its own.
+std::vector<TrainingClip> separable_clips(int kinds, int repeats, uint64_t seed);
+
+/// Preset tiny with a text tower over the captions of separable_clips().
+RetrieverConfig tiny_retriever_config();
+
+}  // namespace remomask

@@ -1,0 +1,132 @@
+#include "retriever/training.h"
+
+#include <gtest/gtest.h>
+#include <torch/utils.h>
+
+#include <filesystem>
+#include <set>
+
+#include "base/error.h"
+#include "retriever/retrieval_metrics.h"
+#include "retriever_test_tools.h"
+#include "text/masked_words.h"
+
+namespace remomask {
+namespace {
+
+RetrieverTrainingOptions quick_options(int64_t steps) {
+  RetrieverTrainingOptions options("tiny");
+  options.trainer.steps = steps;
+  options.batch = 16;
+  options.queue_size = 24;
+  return options;
+}
+
+TEST(EpochBatches, NoGroupTwiceAndEveryClipOnce) {
+  auto clips = separable_clips(8, 4, 1);
+  for (size_t i = 0; i < clips.size(); ++i) clips[i].group = static_cast<int>(i / 2);
+  const auto batches = epoch_batches(clips, 8, 1, 0);
+  ASSERT_EQ(batches.size(), 4u);
+  std::set<size_t> seen;
+  size_t repeated = 0;
+  for (const auto& batch : batches) {
+    ASSERT_EQ(batch.size(), 8u);
+    std::set<int> groups;
+    for (const size_t index : batch) {
+      seen.insert(index);
+      groups.insert(clips[index].group);
+    }
+    repeated += batch.size() - groups.size();
+  }
+  EXPECT_EQ(seen.size(), 32u);
+  EXPECT_LE(repeated, 4u);  // only where the last batch has nothing else
+  EXPECT_EQ(epoch_batches(clips, 8, 1, 0), batches);
+  EXPECT_NE(epoch_batches(clips, 8, 1, 1), batches);
+  EXPECT_EQ(epoch_batches(clips, 100, 1, 0).size(), 1u);
+}
+
+TEST(RetrieverTraining, ResumedRunEqualsTheUninterrupted) {
+  const auto clips = separable_clips(12, 3, 1);
+  const std::string path = testing::TempDir() + "/retriever_checkpoint.safetensors";
+  std::filesystem::remove(path);
+  RetrieverTrainingOptions options = quick_options(6);
+  const RetrieverConfig config = retriever_preset("tiny");
+  const ModelStage whole = train_retriever(clips, clips, {}, config, options, {});
+
+  options.trainer.checkpoint_path = path;
+  options.trainer.checkpoint_seconds = 0;
+  std::stop_source stop;
+  Monitor monitor;
+  monitor.stop = stop.get_token();
+  monitor.progress = [&](const Progress& progress) {
+    if (progress.done >= 1) stop.request_stop();
+  };
+  EXPECT_THROW(train_retriever(clips, clips, {}, config, options, monitor), Interrupted);
+  const ModelStage resumed = train_retriever(clips, clips, {}, config, options, {});
+  EXPECT_EQ(resumed.config, whole.config);
+  ASSERT_EQ(resumed.tensors.size(), whole.tensors.size());
+  for (const auto& [name, tensor] : whole.tensors) {
+    EXPECT_TRUE(tensor.equal(resumed.tensors.at(name))) << name;
+  }
+  // Another run must not continue from it.
+  options.queues = Queues::none;
+  EXPECT_THROW(train_retriever(clips, clips, {}, config, options, {}), Error);
+  std::filesystem::remove(path);
+}
+
+TEST(RetrieverTraining, LearnsSeparableMotionsAndSurvivesTheFile) {
+  const auto train = separable_clips(24, 8, 1), test = separable_clips(24, 2, 99);
+  const ModelStage stage =
+      train_retriever(train, {}, {}, retriever_preset("tiny"), quick_options(150), {});
+  const Retriever retriever(stage);
+  const auto figures = evaluate_retrieval(retriever, test, false).subsets.front();
+  EXPECT_GT(figures.text_to_motion.recall[0], 60);  // chance: 4 %
+  EXPECT_GT(figures.motion_to_text.recall[0], 60);
+
+  const std::string path = testing::TempDir() + "/retriever.safetensors";
+  save_model(path, {stage});
+  const Retriever loaded(load_stage(path, "retriever"));
+  std::filesystem::remove(path);
+  EXPECT_EQ(loaded.hash(), retriever.hash());
+  EXPECT_EQ(loaded.feature_mode(), FeatureMode::fixed);
+  const std::vector<const Features*> clips = {&test[0].features, &test[5].features};
+  const auto one = retriever.encode_motion(clips), two = loaded.encode_motion(clips);
+  EXPECT_TRUE(one.global.equal(two.global));
+  EXPECT_TRUE(one.parts.equal(two.parts));
+  EXPECT_EQ(one.global.sizes(), (std::vector<int64_t>{2, retriever.embedding_width()}));
+  EXPECT_EQ(one.parts.sizes(), (std::vector<int64_t>{2, 6, retriever.part_width()}));
+  const auto words = loaded.encode_text({"a person walks slowly", "runs"});
+  EXPECT_EQ(words.states.size(2), loaded.text_width());
+  EXPECT_TRUE(words.query.equal(retriever.encode_text({"a person walks slowly", "runs"}).query));
+  const auto alone = loaded.encode_text({"runs"});
+  EXPECT_TRUE(torch::allclose(alone.query[0], words.query[1], 1e-4, 1e-4));
+}
+
+TEST(RetrieverTraining, StartsFromAPretrainedTower) {
+  const auto clips = separable_clips(12, 2, 1);
+  std::vector<std::string> captions;
+  for (const TrainingClip& clip : separable_clips(24, 1, 1)) captions.push_back(clip.captions[0]);
+  TextTrainingOptions text_options;
+  text_options.trainer.steps = 2;
+  const ModelStage text =
+      train_text_encoder(captions, text_encoder_preset("tiny"), text_options, {});
+  RetrieverTrainingOptions options = quick_options(1);
+  options.trainer.learning_rate = 0;
+  const ModelStage stage = train_retriever(clips, {}, text, retriever_preset("tiny"), options, {});
+  EXPECT_EQ(stage.config["text_tower"]["vocabulary"], text.config["vocabulary"]);
+  EXPECT_TRUE(stage.tensors.at("text_tower.tokens.weight").equal(text.tensors.at("tokens.weight")));
+}
+
+TEST(RetrieverTraining, ErrorsSayWhatToDo) {
+  auto clips = separable_clips(2, 1, 1);
+  for (TrainingClip& clip : clips) clip.captions = {" . "};
+  EXPECT_THROW(train_retriever(clips, {}, {}, retriever_preset("tiny"), quick_options(1), {}),
+               Error);
+  EXPECT_THROW(Retriever(ModelStage{"tokenizer", {}, {}}), Error);
+  EXPECT_THROW(Retriever(ModelStage{"retriever", {{"preset", "tiny"}}, {}}), Error);
+  EXPECT_THROW(retriever_preset("huge"), Error);
+  EXPECT_THROW(parse_queues("three"), Error);
+}
+
+}  // namespace
+}  // namespace remomask
