@@ -313,6 +313,16 @@ std::vector<ClipEmbedding> Database::embeddings(const std::string& retriever_has
   return embeddings;
 }
 
+std::optional<ClipEmbedding> Database::embedding(const std::string& retriever_hash,
+                                                 int64_t clip_id) const {
+  SqliteStatement row(impl_->connection,
+                      "SELECT motion, parts, text FROM embedding "
+                      "WHERE clip_id = ? AND retriever_hash = ?");
+  row.bind(1, clip_id).bind(2, retriever_hash);
+  if (!row.step()) return std::nullopt;
+  return ClipEmbedding{clip_id, row.floats(0), row.floats(1), row.floats(2)};
+}
+
 void Database::set_fact(const std::string& key, const std::string& value) {
   if (key == "uuid" || key == "generation" || key == "motion_format") {
     throw Error("the fact '" + key + "' belongs to the database itself; choose another key");

@@ -92,6 +92,8 @@ class Database {
   void store_embeddings(const std::string& retriever_hash,
                         const std::vector<ClipEmbedding>& embeddings);
   std::vector<ClipEmbedding> embeddings(const std::string& retriever_hash) const;
+  /// Of one clip; nothing when this retriever has not embedded it.
+  std::optional<ClipEmbedding> embedding(const std::string& retriever_hash, int64_t clip_id) const;
 
   /// Free-form facts about the whole database.
   void set_fact(const std::string& key, const std::string& value);

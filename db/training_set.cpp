@@ -91,8 +91,11 @@ std::vector<TrainingClip> load_training_set(const Database& database,
   std::unordered_map<std::string, int> groups;
   for (const Clip& clip : clips) {
     const int group = groups.emplace(clip.group, static_cast<int>(groups.size())).first->second;
-    const bool wanted =
-        std::find(options.splits.begin(), options.splits.end(), clip.split) != options.splits.end();
+    const auto listed = [](const std::vector<std::string>& names, const std::string& name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    const bool wanted = listed(options.splits, clip.split) &&
+                        (options.sources.empty() || listed(options.sources, clip.source));
     if (!wanted || clip.frames < options.min_frames) continue;
     const Skeleton& own = skeleton_named(clip.skeleton, clip.name);
     if (skeleton && skeleton != &own) {

@@ -24,6 +24,7 @@ struct TrainingClip {
 
 struct TrainingSetOptions {
   std::vector<std::string> splits = {"train"};
+  std::vector<std::string> sources;  ///< data sets (Clip::source); empty: all
   FeatureMode mode = FeatureMode::fixed;
   bool add_mirrored = true;  ///< twins for clips whose mirror is not stored
   int min_frames = 20;

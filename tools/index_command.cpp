@@ -17,7 +17,8 @@ void register_index(CLI::App& app, Program& program) {
                   "remomask index motions.sqlite");
   command->add_option("db", options->files.database, "motion database")->required();
   options->files.add_model(*command);
-  command->add_option("-o,--index", options->files.index, "index file; default: beside the database");
+  command->add_option("-o,--index", options->files.index,
+                      "index file; default: beside the database");
   command->add_option("--factory", options->index.factory, "FAISS index type")
       ->capture_default_str();
   command->add_option("--search-parameters", options->index.search_parameters,

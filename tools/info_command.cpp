@@ -44,15 +44,9 @@ nlohmann::json describe_database(const std::string& path) {
     captions += clip.captions.size();
     seconds += clip.frames / 20.0;
   }
-  return {{"file", path},
-          {"uuid", database.uuid()},
-          {"generation", database.generation()},
-          {"clips", clips.size()},
-          {"captions", captions},
-          {"minutes", seconds / 60},
-          {"splits", splits},
-          {"sources", sources},
-          {"licences", licences}};
+  return {{"file", path},          {"uuid", database.uuid()}, {"generation", database.generation()},
+          {"clips", clips.size()}, {"captions", captions},    {"minutes", seconds / 60},
+          {"splits", splits},      {"sources", sources},      {"licences", licences}};
 }
 
 }  // namespace
@@ -63,8 +57,7 @@ void register_info(CLI::App& app, Program& program) {
                                   "remomask info models/base.safetensors");
   command->add_option("file", *path, "database (.sqlite) or model (.safetensors)")->required();
   command->callback([path, &program] {
-    const auto document =
-        is_model_path(*path) ? describe_model(*path) : describe_database(*path);
+    const auto document = is_model_path(*path) ? describe_model(*path) : describe_database(*path);
     if (program.json) return program.print_json(document);
     for (const auto& [key, value] : document.items()) {
       if (value.is_object()) {

@@ -28,11 +28,12 @@ int run(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--device", program.device, "cpu, cuda or cuda:N")->capture_default_str();
   app.require_subcommand(1);
-  app.footer("Exit status: 0 ok, 1 failed, 2 wrong usage. \"remomask COMMAND --help\" shows the\n"
-             "options of a command and an example.");
+  app.footer(
+      "Exit status: 0 ok, 1 failed, 2 wrong usage. \"remomask COMMAND --help\" shows the\n"
+      "options of a command and an example.");
   const RegisterCommand commands[] = {
-      register_generate, register_search,  register_import,  register_index,      register_train,
-      register_evaluate, register_convert, register_sheet,   register_procedural, register_info,
+      register_generate, register_search,  register_import, register_index,      register_train,
+      register_evaluate, register_convert, register_sheet,  register_procedural, register_info,
   };
   for (const RegisterCommand add : commands) add(app, program);
   app.parse_complete_callback([&] { set_compute_threads(program.threads); });

@@ -16,9 +16,10 @@ void register_procedural(CLI::App& app, Program& program) {
     ProceduralOptions make;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(
-      app, "procedural", "add motions made by formula, with captions, to a database (no data needed)",
-      "remomask procedural --db motions.sqlite --count 360");
+  CLI::App* command =
+      add_command(app, "procedural",
+                  "add motions made by formula, with captions, to a database (no data needed)",
+                  "remomask procedural --db motions.sqlite --count 360");
   command->add_option("--db", options->database, "database file; made when missing")->required();
   command->add_option("--count", options->make.count, "number of clips")
       ->capture_default_str()

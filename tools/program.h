@@ -12,9 +12,9 @@ namespace remomask {
 /// What every sub-command shares: global options, output, stopping.
 class Program {
  public:
-  bool json = false;    ///< --json: one JSON document on standard output
-  bool quiet = false;   ///< --quiet: no progress
-  int threads = 0;      ///< --threads: 0 for all available CPUs
+  bool json = false;   ///< --json: one JSON document on standard output
+  bool quiet = false;  ///< --quiet: no progress
+  int threads = 0;     ///< --threads: 0 for all available CPUs
   std::string device = "cpu";
 
   /// Progress on standard error (a bar with an ETA on a terminal, plain lines

@@ -27,7 +27,8 @@ std::string FileOptions::index_path() const {
 
 void FilterOptions::add(CLI::App& command) {
   command.add_option("--split", splits, "only clips of this split (repeatable)");
-  command.add_option("--label", labels, "only clips with KEY=VALUE among their labels (repeatable)");
+  command.add_option("--label", labels,
+                     "only clips with KEY=VALUE among their labels (repeatable)");
   command.add_option("--min-seconds", min_seconds, "only clips at least this long");
   command.add_option("--max-seconds", max_seconds, "only clips at most this long");
 }
@@ -47,8 +48,9 @@ const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
   if (found != stages.end()) return found->second;
   std::string held;
   for (const auto& [name, stage] : stages) held += (held.empty() ? "" : ", ") + name;
-  throw FileError(model_path, 0, "holds no " + kind + " (it holds: " + held +
-                                     "); train it with \"remomask train " + kind + "\"");
+  throw FileError(model_path, 0,
+                  "holds no " + kind + " (it holds: " + held +
+                      "); train it with \"remomask train " + kind + "\"");
 }
 
 SearchWorkspace::SearchWorkspace(const std::map<std::string, ModelStage>& stages,

@@ -44,6 +44,7 @@ class SearchWorkspace {
 
   const Retriever& retriever() const { return retriever_; }
   const Database& database() const { return database_; }
+  const VectorIndex& index() const { return index_; }
   std::vector<SearchHit> search(const std::string& text, const SearchOptions& options) const;
 
  private:

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace remomask {
+
+struct ProgramResult {
+  int exit_code = -1;  ///< 128 + signal when it was killed
+  std::string output, errors;
+};
+
+/// Runs the program `remomask` with these arguments; `environment` adds to the
+/// inherited one. Killed after `kill_after_seconds` with SIGKILL when positive.
+ProgramResult run_program(const std::vector<std::string>& arguments,
+                          const std::map<std::string, std::string>& environment = {},
+                          double kill_after_seconds = 0, int signal_number = 9);
+
+/// Runs with --json, expects success and parses the output. Throws
+/// std::runtime_error that shows both outputs otherwise.
+nlohmann::json run_json(std::vector<std::string> arguments);
+
+/// A folder of its own that is removed at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace remomask
