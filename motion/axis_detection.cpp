@@ -27,8 +27,13 @@ Vec3 long_axis(const Motion& motion) {
 
 char detect_up_axis(const Motion& raw, const Motion* rest_pose) {
   const Vec3 clip = long_axis(raw);
-  const Vec3 rest = rest_pose ? long_axis(*rest_pose) : Vec3::Zero();
-  const Vec3 score = clip + 0.8 * rest + Vec3(0, 0.4, 0);
+  Vec3 score = clip + Vec3(0, 0.4, 0);
+  if (rest_pose) {
+    // Which axis counts, not its slant: rest poses lean as their bones do.
+    int along = 0;
+    long_axis(*rest_pose).maxCoeff(&along);
+    score[along] += 0.9;
+  }
   int best = 1;
   for (int axis = 0; axis < 3; ++axis) {
     if (score[axis] > score[best]) best = axis;
