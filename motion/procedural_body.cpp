@@ -9,28 +9,28 @@ namespace remomask {
 namespace {
 
 enum BodyJoint {
-  kPelvis,
-  kLeftHip,
-  kRightHip,
-  kSpine1,
-  kLeftKnee,
-  kRightKnee,
-  kSpine2,
-  kLeftAnkle,
-  kRightAnkle,
-  kSpine3,
-  kLeftToe,
-  kRightToe,
-  kNeck,
-  kLeftCollar,
-  kRightCollar,
-  kHead,
-  kLeftShoulder,
-  kRightShoulder,
-  kLeftElbow,
-  kRightElbow,
-  kLeftWrist,
-  kRightWrist
+  kBodyPelvis,
+  kBodyLeftHip,
+  kBodyRightHip,
+  kBodySpine1,
+  kBodyLeftKnee,
+  kBodyRightKnee,
+  kBodySpine2,
+  kBodyLeftAnkle,
+  kBodyRightAnkle,
+  kBodySpine3,
+  kBodyLeftToe,
+  kBodyRightToe,
+  kBodyNeck,
+  kBodyLeftCollar,
+  kBodyRightCollar,
+  kBodyHead,
+  kBodyLeftShoulder,
+  kBodyRightShoulder,
+  kBodyLeftElbow,
+  kBodyRightElbow,
+  kBodyLeftWrist,
+  kBodyRightWrist
 };
 
 constexpr double kLegReach = 0.993;   // of the leg's length: a knee is never locked
@@ -51,43 +51,43 @@ double bone_length(int joint) { return humanml_skeleton().bone_lengths[joint]; }
 Vec3 natural_bone(int joint) {
   Vec3 direction;
   switch (joint) {
-    case kLeftHip:
+    case kBodyLeftHip:
       direction = {0.60, -0.79, -0.10};
       break;
-    case kRightHip:
+    case kBodyRightHip:
       direction = {-0.60, -0.79, -0.10};
       break;
-    case kSpine1:
+    case kBodySpine1:
       direction = {0, 0.96, -0.25};
       break;
-    case kSpine2:
+    case kBodySpine2:
       direction = {0, 0.98, 0.15};
       break;
-    case kSpine3:
+    case kBodySpine3:
       direction = {0, 1, 0.05};
       break;
-    case kNeck:
+    case kBodyNeck:
       direction = {0, 0.99, -0.14};
       break;
-    case kLeftCollar:
+    case kBodyLeftCollar:
       direction = {0.54, 0.83, -0.10};
       break;
-    case kRightCollar:
+    case kBodyRightCollar:
       direction = {-0.54, 0.83, -0.10};
       break;
-    case kHead:
+    case kBodyHead:
       direction = {0, 0.88, 0.47};
       break;
-    case kLeftShoulder:
+    case kBodyLeftShoulder:
       direction = {0.94, 0.30, -0.15};
       break;
-    case kRightShoulder:
+    case kBodyRightShoulder:
       direction = {-0.94, 0.30, -0.15};
       break;
-    case kLeftToe:
+    case kBodyLeftToe:
       direction = {0.12, -0.42, 0.90};
       break;
-    case kRightToe:
+    case kBodyRightToe:
       direction = {-0.12, -0.42, 0.90};
       break;
     default:
@@ -107,11 +107,11 @@ Vec3 ankle_target(const FootPose& foot, int side) {
 }
 
 double leg_reach(int side) {
-  return kLegReach * (bone_length(kLeftKnee + side) + bone_length(kLeftAnkle + side));
+  return kLegReach * (bone_length(kBodyLeftKnee + side) + bone_length(kBodyLeftAnkle + side));
 }
 
 Vec3 hip_position(const BodyPose& pose, int side) {
-  return pose.pelvis + pelvis_rotation(pose) * natural_bone(kLeftHip + side);
+  return pose.pelvis + pelvis_rotation(pose) * natural_bone(kBodyLeftHip + side);
 }
 
 /// Lifts the heel of a flat standing foot that the leg is too short for, as a
@@ -169,7 +169,8 @@ void sink_pelvis(std::vector<BodyPose>& poses) {
 
 void place_leg(const BodyPose& pose, int side, const Vec3& hip, Motion& motion, int frame) {
   const FootPose& foot = pose.feet[side];
-  const double upper = bone_length(kLeftKnee + side), lower = bone_length(kLeftAnkle + side);
+  const double upper = bone_length(kBodyLeftKnee + side),
+               lower = bone_length(kBodyLeftAnkle + side);
   const Vec3 target = ankle_target(foot, side);
   const Vec3 direction = (target - hip).normalized();
   const double distance = std::clamp((target - hip).norm(), 0.3, 0.9995 * (upper + lower));
@@ -180,10 +181,10 @@ void place_leg(const BodyPose& pose, int side, const Vec3& hip, Motion& motion, 
   const Vec3 out = (pole - direction * pole.dot(direction)).normalized();
   const double along = (upper * upper - lower * lower + distance * distance) / (2 * distance);
   const double away = std::sqrt(std::max(upper * upper - along * along, 0.0));
-  motion.set(frame, kLeftHip + side, hip);
-  motion.set(frame, kLeftKnee + side, hip + direction * along + out * away);
-  motion.set(frame, kLeftAnkle + side, ankle);
-  motion.set(frame, kLeftToe + side, ankle - toe_to_ankle(side, foot.yaw, foot.pitch));
+  motion.set(frame, kBodyLeftHip + side, hip);
+  motion.set(frame, kBodyLeftKnee + side, hip + direction * along + out * away);
+  motion.set(frame, kBodyLeftAnkle + side, ankle);
+  motion.set(frame, kBodyLeftToe + side, ankle - toe_to_ankle(side, foot.yaw, foot.pitch));
 }
 
 void place_arm(const ArmPose& arm, int side, const Quat& chest, const Vec3& collar, Motion& motion,
@@ -195,36 +196,37 @@ void place_arm(const ArmPose& arm, int side, const Quat& chest, const Vec3& coll
   // The shoulder girdle takes part in raising: little at first, 30 degrees overhead.
   const double raised = std::acos(std::clamp((upper * down).dot(down), -1.0, 1.0));
   const double shrug = 30 * std::pow(raised / std::numbers::pi, 2);
-  const Vec3 shoulder = collar + chest * (turn_z(s * shrug) * natural_bone(kLeftShoulder + side));
-  const Vec3 elbow = shoulder + chest * (upper * natural_bone(kLeftElbow + side));
+  const Vec3 shoulder =
+      collar + chest * (turn_z(s * shrug) * natural_bone(kBodyLeftShoulder + side));
+  const Vec3 elbow = shoulder + chest * (upper * natural_bone(kBodyLeftElbow + side));
   const Vec3 wrist =
-      elbow + chest * (upper * (turn_x(-arm.elbow) * natural_bone(kLeftWrist + side)));
-  motion.set(frame, kLeftShoulder + side, shoulder);
-  motion.set(frame, kLeftElbow + side, elbow);
-  motion.set(frame, kLeftWrist + side, wrist);
+      elbow + chest * (upper * (turn_x(-arm.elbow) * natural_bone(kBodyLeftWrist + side)));
+  motion.set(frame, kBodyLeftShoulder + side, shoulder);
+  motion.set(frame, kBodyLeftElbow + side, elbow);
+  motion.set(frame, kBodyLeftWrist + side, wrist);
 }
 
 void place_body(const BodyPose& pose, Motion& motion, int frame) {
   Quat rotation = pelvis_rotation(pose);
   Vec3 at = pose.pelvis;
-  motion.set(frame, kPelvis, at);
+  motion.set(frame, kBodyPelvis, at);
   for (int side = 0; side < 2; ++side) {
     place_leg(pose, side, hip_position(pose, side), motion, frame);
   }
-  for (int joint : {kSpine1, kSpine2, kSpine3}) {
+  for (int joint : {kBodySpine1, kBodySpine2, kBodySpine3}) {
     at += rotation * natural_bone(joint);
     motion.set(frame, joint, at);
     rotation = rotation * turn_y(pose.twist / 3) * turn_x(pose.bend / 3) * turn_z(-pose.lean / 3);
   }
   for (int side = 0; side < 2; ++side) {
-    const Vec3 collar = at + rotation * natural_bone(kLeftCollar + side);
-    motion.set(frame, kLeftCollar + side, collar);
+    const Vec3 collar = at + rotation * natural_bone(kBodyLeftCollar + side);
+    motion.set(frame, kBodyLeftCollar + side, collar);
     place_arm(pose.arms[side], side, rotation, collar, motion, frame);
   }
-  const Vec3 neck = at + rotation * natural_bone(kNeck);
-  motion.set(frame, kNeck, neck);
+  const Vec3 neck = at + rotation * natural_bone(kBodyNeck);
+  motion.set(frame, kBodyNeck, neck);
   const Quat head = rotation * turn_y(pose.look) * turn_x(pose.nod);
-  motion.set(frame, kHead, neck + head * natural_bone(kHead));
+  motion.set(frame, kBodyHead, neck + head * natural_bone(kBodyHead));
 }
 
 }  // namespace
@@ -249,11 +251,11 @@ ArmPose mix(const ArmPose& a, const ArmPose& b, double weight) {
 }
 
 double standing_height() {
-  return leg_reach(1) - natural_bone(kRightHip).y() - natural_bone(kRightToe).y() - 0.008;
+  return leg_reach(1) - natural_bone(kBodyRightHip).y() - natural_bone(kBodyRightToe).y() - 0.008;
 }
 
 Vec3 toe_to_ankle(int side, double yaw, double pitch) {
-  return -(turn_y(yaw) * (turn_x(pitch) * natural_bone(kLeftToe + side)));
+  return -(turn_y(yaw) * (turn_x(pitch) * natural_bone(kBodyLeftToe + side)));
 }
 
 Motion solve_body(std::vector<BodyPose> poses) {

@@ -21,6 +21,24 @@ struct ProceduralKind {
   bool styles = false;                   ///< energetic, tired, old make sense
 };
 
-const std::vector<ProceduralKind>& procedural_kind_table();
+using ProceduralKinds = std::vector<ProceduralKind>;
+
+/// All kinds.
+const ProceduralKinds& procedural_kind_table();
+
+/// Arms; trunk and legs on the spot.
+void add_arm_kinds(ProceduralKinds& kinds);
+void add_body_kinds(ProceduralKinds& kinds);
+
+/// Adds the kind for every side in turn, with the side at the end of its name.
+template <class MakeKind>
+void add_sides(ProceduralKinds& kinds, MakeKind&& make) {
+  for (ActionSide side : {ActionSide::left, ActionSide::right}) {
+    ProceduralKind kind = make(side);
+    kind.side = side == ActionSide::left ? "left" : "right";
+    kind.name += "-" + kind.side;
+    kinds.push_back(std::move(kind));
+  }
+}
 
 }  // namespace remomask
