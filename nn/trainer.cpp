@@ -47,6 +47,7 @@ struct Trainer::Impl {
   std::vector<TrainedParameter> parameters;
   std::unique_ptr<torch::optim::AdamW> optimizer;
   int64_t step = 0;
+  double smooth_loss = 0;  ///< part of the history's figures, so it outlives an interruption
   nlohmann::json history = nlohmann::json::array();
   int64_t validation_every = 0;
   ValidationFunction validation;
@@ -100,6 +101,7 @@ struct Trainer::Impl {
                      {{"format", kCheckpointFormat},
                       {"config", config.dump()},
                       {"step", std::to_string(step)},
+                      {"smooth_loss", nlohmann::json(smooth_loss).dump()},
                       {"history", history.dump()}});
   }
 
@@ -137,6 +139,7 @@ struct Trainer::Impl {
           std::move(state);
     }
     step = std::stoll(file.metadata["step"]);
+    smooth_loss = nlohmann::json::parse(file.metadata["smooth_loss"]).get<double>();
     history = nlohmann::json::parse(file.metadata["history"]);
   }
 
@@ -215,8 +218,6 @@ void Trainer::run(const StepFunction& step_function, const Monitor& monitor) {
   const auto seconds_since = [](Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
   };
-  double smooth_loss = 0;
-  bool first = true;
   while (self.step < self.options.steps) {
     if (monitor.stop_requested()) {
       self.save_checkpoint();
@@ -228,8 +229,7 @@ void Trainer::run(const StepFunction& step_function, const Monitor& monitor) {
     }
     std::map<std::string, double> figures;
     const double loss = self.one_step(step_function, figures);
-    smooth_loss = first ? loss : 0.98 * smooth_loss + 0.02 * loss;
-    first = false;
+    self.smooth_loss = self.step == 0 ? loss : 0.98 * self.smooth_loss + 0.02 * loss;
     ++self.step;
     const bool last = self.step == self.options.steps;
     if (self.validation && (self.step % self.validation_every == 0 || last)) {
@@ -239,7 +239,7 @@ void Trainer::run(const StepFunction& step_function, const Monitor& monitor) {
         at::NoGradGuard no_grad;
         nlohmann::json entry = self.validation(self.step);
         entry["step"] = self.step;
-        entry["loss"] = smooth_loss;
+        entry["loss"] = self.smooth_loss;
         self.history.push_back(entry);
       }
       self.exchange_averages();
@@ -250,7 +250,7 @@ void Trainer::run(const StepFunction& step_function, const Monitor& monitor) {
     }
     if (last || seconds_since(reported) > 1.0) {
       reported = Clock::now();
-      std::string detail = "loss " + std::to_string(smooth_loss);
+      std::string detail = "loss " + std::to_string(self.smooth_loss);
       for (const auto& [name, value] : figures) detail += "  " + name + " " + std::to_string(value);
       if (!self.history.empty()) detail += "  last validation " + self.history.back().dump();
       monitor.report({"train " + self.options.stage_name, static_cast<double>(self.step),
