@@ -17,9 +17,9 @@ namespace {
 // can be among the best within its error bound, then those few are summed again
 // in one fixed order.
 
-constexpr int64_t kMostQueries = 256;  // of one matrix product
-constexpr int64_t kMostScores = int64_t{1} << 22;
-constexpr int64_t kGatheredRows = 4096;  // stay in the cache between copy and product
+constexpr int64_t kMostQueries = 256;              // of one matrix product
+constexpr int64_t kMostScores = int64_t{1} << 18;  // stay in the cache between product and choice
+constexpr int64_t kGatheredRows = 4096;            // stay in the cache between copy and product
 constexpr size_t kFirstLimit = 1024;
 
 /// Twice the bound |fl(x.y) - x.y| <= width * u * |x||y| of any order of
