@@ -117,7 +117,7 @@ ModelStage retriever_stage(BmmModel& model, const RetrieverConfig& config) {
 RetrieverTrainingOptions::RetrieverTrainingOptions(const std::string& preset) {
   trainer.stage_name = "retriever";
   trainer.steps = 1500;
-  trainer.learning_rate = 6e-4;
+  trainer.learning_rate = 1e-3;
   trainer.warmup_steps = 100;
   trainer.weight_decay = 0.01;
   trainer.ema_decay = 0.995;
@@ -129,6 +129,7 @@ RetrieverTrainingOptions::RetrieverTrainingOptions(const std::string& preset) {
     trainer.warmup_steps = 20;
     trainer.ema_decay = 0.9;
   } else if (preset == "paper") {
+    batch = 128;
     queue_size = 65536;
     patch_keep = 1;
     trainer.steps = 40000;

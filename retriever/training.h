@@ -13,12 +13,12 @@ namespace remomask {
 
 struct RetrieverTrainingOptions {
   TrainerOptions trainer;
-  int64_t batch = 128;
+  int64_t batch = 64;
   Queues queues = Queues::both;
-  int64_t queue_size = 4096;
+  int64_t queue_size = 2048;
   double momentum = 0.99;
   double temperature = 0.07;  ///< at the start; it is learnt
-  double part_weight = 0.25;  ///< of the part-level terms
+  double part_weight = 0.1;   ///< of the part-level terms
   double least_crop = 0.7;    ///< shortest random crop, share of the clip
   double patch_keep = 0.5;    ///< share of the patches that the online encoder sees
   double word_drop = 0.1;     ///< share of the words hidden from the online text tower

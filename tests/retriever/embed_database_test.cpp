@@ -1,0 +1,54 @@
+#include "retriever/embed_database.h"
+
+#include <gtest/gtest.h>
+#include <torch/utils.h>
+
+#include "retriever/retriever_model.h"
+#include "retriever_test_tools.h"
+#include "tests/db/db_test_tools.h"
+
+namespace remomask {
+namespace {
+
+Retriever untrained_retriever(int64_t seed) {
+  torch::manual_seed(static_cast<uint64_t>(seed));
+  const RetrieverConfig config = tiny_retriever_config();
+  RetrieverModel model(config);
+  return Retriever({"retriever", config, module_tensors(model)});
+}
+
+TEST(EmbedDatabase, StoresEveryClipOnceForEachRetriever) {
+  const TestFolder folder;
+  Database database(folder / "a.sqlite", OpenMode::create);
+  database.add_clip(named_clip("one"), walking_motion(30, 1));
+  Clip silent = named_clip("two");
+  silent.captions.clear();
+  silent.split = "none";
+  database.add_clip(silent, walking_motion(200, 2));
+
+  const Retriever retriever = untrained_retriever(1);
+  EXPECT_EQ(embed_database(database, retriever), 2);
+  EXPECT_EQ(embed_database(database, retriever), 0);
+  const auto stored = database.embeddings(retriever.hash());
+  ASSERT_EQ(stored.size(), 2u);
+  ASSERT_EQ(stored[0].motion.size(), static_cast<size_t>(retriever.embedding_width()));
+  ASSERT_EQ(stored[0].parts.size(), static_cast<size_t>(6 * retriever.part_width()));
+  EXPECT_TRUE(stored[1].text.empty());
+
+  const Features features = extract_features_all_frames(
+      database.motion(stored[0].clip_id), humanml_skeleton(), retriever.feature_mode());
+  const MotionEncoding motion = retriever.encode_motion({&features});
+  EXPECT_TRUE(torch::allclose(motion.global[0], torch::tensor(stored[0].motion), 1e-4, 1e-4));
+  EXPECT_TRUE(
+      torch::allclose(motion.parts[0].flatten(), torch::tensor(stored[0].parts), 1e-4, 1e-4));
+  at::Tensor text = retriever.encode_text(named_clip("one").captions).query.mean(0);
+  text = text / text.norm();
+  EXPECT_TRUE(torch::allclose(text, torch::tensor(stored[0].text), 1e-4, 1e-4));
+
+  database.add_clip(named_clip("three"), walking_motion(40, 3));
+  EXPECT_EQ(embed_database(database, retriever), 3);
+  EXPECT_EQ(embed_database(database, untrained_retriever(2)), 3);
+}
+
+}  // namespace
+}  // namespace remomask
