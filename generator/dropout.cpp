@@ -4,6 +4,7 @@
 #include <torch/types.h>
 
 #include <cmath>
+#include <limits>
 
 namespace remomask {
 
@@ -17,18 +18,19 @@ at::Tensor counter_dropout(const at::Tensor& x, double rate, bool training) {
   float* values = mask.data_ptr<float>();
   const int64_t count = mask.numel();
   // Four 16-bit draws from every 64-bit mix (splitmix64).
-  at::parallel_for(0, (count + 3) / 4, 4096, [&](int64_t begin, int64_t end) {
-    for (int64_t i = begin; i < end; ++i) {
-      uint64_t bits = seed + static_cast<uint64_t>(i) * 0x9e3779b97f4a7c15u;
-      bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
-      bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
-      bits ^= bits >> 31;
-      const int64_t last = std::min<int64_t>(count, 4 * i + 4);
-      for (int64_t j = 4 * i; j < last; ++j, bits >>= 16) {
-        values[j] = (bits & 0xffff) < threshold ? 0.f : scale;
-      }
+  const auto draw = [&](int64_t four, int64_t wanted) {
+    uint64_t bits = seed + static_cast<uint64_t>(four) * 0x9e3779b97f4a7c15u;
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+    bits ^= bits >> 31;
+    for (int64_t j = 0; j < wanted; ++j) {
+      values[4 * four + j] = ((bits >> (16 * j)) & 0xffff) < threshold ? 0.f : scale;
     }
+  };
+  at::parallel_for(0, count / 4, 4096, [&](int64_t begin, int64_t end) {
+    for (int64_t four = begin; four < end; ++four) draw(four, 4);
   });
+  draw(count / 4, count % 4);
   return x * mask.to(x.options());
 }
 

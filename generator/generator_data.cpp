@@ -1,0 +1,250 @@
+#include "generator/generator_data.h"
+
+#include <torch/types.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "base/error.h"
+#include "base/random.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr int kLeastFrames = 8;
+constexpr size_t kTextBlock = 256;
+constexpr int kSecondOffset = 2;
+
+bool is_usable(const TrainingClip& clip) {
+  return !clip.captions.empty() && clip.features.frames >= kLeastFrames;
+}
+
+Features rows_from(const Features& features, int first) {
+  Features part(features.frames - first, features.dim);
+  std::copy(features.row(first), features.row(0) + features.values.size(), part.values.begin());
+  return part;
+}
+
+/// Numbers the distinct captions of all clips in the order of their appearance.
+struct CaptionNumbers {
+  std::map<std::string, int64_t> numbers;
+  std::vector<std::string> captions;
+
+  int64_t number(const std::string& caption) {
+    const auto [place, is_new] = numbers.emplace(caption, static_cast<int64_t>(captions.size()));
+    if (is_new) captions.push_back(caption);
+    return place->second;
+  }
+};
+
+CaptionFeatures encode_captions(const std::vector<std::string>& captions,
+                                const Retriever& retriever, const Monitor& monitor) {
+  CaptionFeatures features;
+  features.offsets.push_back(0);
+  std::vector<at::Tensor> states, queries;
+  for (size_t first = 0; first < captions.size(); first += kTextBlock) {
+    if (monitor.stop_requested()) throw Interrupted("encoding captions stopped");
+    const size_t last = std::min(captions.size(), first + kTextBlock);
+    const TextEncoding encoding =
+        retriever.encode_text({captions.begin() + static_cast<std::ptrdiff_t>(first),
+                               captions.begin() + static_cast<std::ptrdiff_t>(last)});
+    states.push_back(encoding.states.flatten(0, 1).index_select(
+        0, torch::nonzero(encoding.mask.reshape({-1})).squeeze(1)));
+    queries.push_back(encoding.query);
+    const auto lengths = encoding.mask.sum(1).contiguous();
+    for (int64_t i = 0; i < lengths.size(0); ++i) {
+      features.offsets.push_back(features.offsets.back() + lengths.data_ptr<int64_t>()[i]);
+    }
+    monitor.report(
+        {"encode captions", static_cast<double>(last), static_cast<double>(captions.size()), ""});
+  }
+  features.states = torch::cat(states, 0);
+  features.query = torch::cat(queries, 0);
+  return features;
+}
+
+TokenSplit tokenize_split(const std::vector<const TrainingClip*>& clips, bool second_offset,
+                          const Tokenizer& tokenizer, CaptionNumbers& captions) {
+  TokenSplit split;
+  std::vector<const Features*> whole;
+  std::vector<Features> shifted;
+  for (const auto* clip : clips) {
+    whole.push_back(&clip->features);
+    if (second_offset) shifted.push_back(rows_from(clip->features, kSecondOffset));
+  }
+  const auto tokens = tokenizer.encode(whole);
+  std::vector<const Features*> parts;
+  for (const auto& part : shifted) parts.push_back(&part);
+  const auto shifted_tokens = second_offset ? tokenizer.encode(parts) : tokens;
+  int64_t query = 0;
+  for (size_t i = 0; i < clips.size(); ++i) {
+    TokenClip clip;
+    clip.tokens.push_back(tokens[i]);
+    if (second_offset) clip.tokens.push_back(shifted_tokens[i]);
+    for (const auto& caption : clips[i]->captions)
+      clip.captions.push_back(captions.number(caption));
+    clip.group = clips[i]->group;
+    clip.first_query = query;
+    query += static_cast<int64_t>(clip.captions.size());
+    split.clips.push_back(std::move(clip));
+  }
+  return split;
+}
+
+at::Tensor encode_motions(const std::vector<const TrainingClip*>& clips,
+                          const Retriever& retriever) {
+  std::vector<const Features*> features;
+  for (const auto* clip : clips) features.push_back(&clip->features);
+  return retriever.encode_motion(features).global;
+}
+
+RetrievalTable split_table(const TokenSplit& split, const at::Tensor& own_motion,
+                           const GeneratorData& data) {
+  std::vector<int64_t> captions, clips;
+  RetrievalQueries queries;
+  for (size_t i = 0; i < split.clips.size(); ++i) {
+    for (const int64_t caption : split.clips[i].captions) {
+      captions.push_back(caption);
+      clips.push_back(static_cast<int64_t>(i));
+      queries.groups.push_back(split.clips[i].group);
+    }
+  }
+  queries.text = data.captions.query.index_select(0, torch::tensor(captions, torch::kLong));
+  queries.own_motion = own_motion.index_select(0, torch::tensor(clips, torch::kLong));
+  std::vector<int> groups;
+  for (const auto& clip : data.train.clips) groups.push_back(clip.group);
+  return build_retrieval_table(queries, data.motion, groups);
+}
+
+}  // namespace
+
+GeneratorData prepare_generator_data(const std::vector<TrainingClip>& train,
+                                     const std::vector<TrainingClip>& val,
+                                     const Tokenizer& tokenizer, const Retriever& retriever,
+                                     const Monitor& monitor) {
+  const torch::NoGradGuard no_grad;
+  const auto usable = [](const std::vector<TrainingClip>& clips) {
+    std::vector<const TrainingClip*> result;
+    for (const auto& clip : clips) {
+      if (is_usable(clip)) result.push_back(&clip);
+    }
+    return result;
+  };
+  const auto train_clips = usable(train), val_clips = usable(val);
+  if (train_clips.empty()) {
+    throw Error("training the generator: no training clip has a caption and at least " +
+                std::to_string(kLeastFrames) + " frames; import motions with texts first");
+  }
+  GeneratorData data;
+  data.rows = tokenizer.config().rows;
+  data.levels = tokenizer.config().levels;
+  data.codes = tokenizer.config().codes;
+  CaptionNumbers captions;
+  monitor.report({"encode motions", 0, 2, "tokens"});
+  data.train = tokenize_split(train_clips, true, tokenizer, captions);
+  data.val = tokenize_split(val_clips, false, tokenizer, captions);
+  data.captions = encode_captions(captions.captions, retriever, monitor);
+  monitor.report({"encode motions", 1, 2, "vectors"});
+  data.motion = encode_motions(train_clips, retriever);
+  std::vector<at::Tensor> texts;
+  for (const auto& clip : data.train.clips) {
+    const auto mean =
+        data.captions.query.index_select(0, torch::tensor(clip.captions, torch::kLong)).mean(0);
+    texts.push_back(mean / mean.norm().clamp_min(1e-9));
+  }
+  data.motion_text = torch::stack(texts);
+  data.train.hits = split_table(data.train, data.motion, data);
+  if (!val_clips.empty()) {
+    data.val.hits = split_table(data.val, encode_motions(val_clips, retriever), data);
+  }
+  monitor.report({"encode motions", 2, 2, ""});
+  return data;
+}
+
+Condition make_condition(const GeneratorData& data, const std::vector<ConditionSample>& samples,
+                         int64_t max_hits) {
+  const auto batch = static_cast<int64_t>(samples.size());
+  const CaptionFeatures& captions = data.captions;
+  int64_t longest = 1;
+  std::vector<int64_t> chosen;
+  for (const auto& sample : samples) {
+    chosen.push_back(sample.caption);
+    longest =
+        std::max(longest, captions.offsets[sample.caption + 1] - captions.offsets[sample.caption]);
+  }
+  Condition condition;
+  condition.text_states = torch::zeros({batch, longest, captions.states.size(1)});
+  condition.text_mask = torch::zeros({batch, longest}, torch::kBool);
+  condition.text_query = captions.query.index_select(0, torch::tensor(chosen, torch::kLong));
+  condition.hit_motion = torch::zeros({batch, max_hits, data.motion.size(1)});
+  condition.hit_text = torch::zeros_like(condition.hit_motion);
+  condition.hit_similarity = torch::zeros({batch, max_hits});
+  condition.hit_mask = torch::zeros({batch, max_hits}, torch::kBool);
+  condition.use_text = torch::zeros({batch}, torch::kBool);
+  condition.use_retrieval = torch::zeros({batch}, torch::kBool);
+  for (int64_t b = 0; b < batch; ++b) {
+    const ConditionSample& sample = samples[static_cast<size_t>(b)];
+    const int64_t first = captions.offsets[sample.caption];
+    const int64_t length = captions.offsets[sample.caption + 1] - first;
+    condition.text_states[b]
+        .slice(0, 0, length)
+        .copy_(captions.states.slice(0, first, first + length));
+    condition.text_mask[b].slice(0, 0, length).fill_(true);
+    for (size_t i = 0; i < sample.hits.size() && static_cast<int64_t>(i) < max_hits; ++i) {
+      const auto place = static_cast<int64_t>(i);
+      condition.hit_motion[b][place].copy_(data.motion[sample.hits[i].motion]);
+      condition.hit_text[b][place].copy_(data.motion_text[sample.hits[i].motion]);
+      condition.hit_similarity.data_ptr<float>()[b * max_hits + place] = sample.hits[i].similarity;
+      condition.hit_mask.data_ptr<bool>()[b * max_hits + place] = true;
+    }
+    condition.use_text.data_ptr<bool>()[b] = sample.use_text;
+    condition.use_retrieval.data_ptr<bool>()[b] = sample.use_retrieval;
+  }
+  return condition;
+}
+
+std::vector<std::vector<size_t>> length_buckets(const std::vector<TokenClip>& clips, int64_t batch,
+                                                uint64_t seed, uint64_t epoch) {
+  CounterRandom random(mix_seed(seed, 0x6275636bu), epoch);
+  std::vector<size_t> order = random.permutation(clips.size());
+  const auto size = static_cast<size_t>(batch);
+  const auto length = [&](size_t clip) { return clips[clip].tokens[0].size(0); };
+  std::vector<std::vector<size_t>> batches;
+  for (size_t first = 0; first < order.size(); first += 8 * size) {
+    const size_t last = std::min(order.size(), first + 8 * size);
+    std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(first),
+                     order.begin() + static_cast<std::ptrdiff_t>(last),
+                     [&](size_t a, size_t b) { return length(a) < length(b); });
+    for (size_t i = first; i < last; i += size) {
+      batches.emplace_back(order.begin() + static_cast<std::ptrdiff_t>(i),
+                           order.begin() + static_cast<std::ptrdiff_t>(std::min(last, i + size)));
+    }
+  }
+  std::vector<std::vector<size_t>> shuffled;
+  for (const size_t i : random.permutation(batches.size())) shuffled.push_back(batches[i]);
+  return shuffled;
+}
+
+PaddedTokens pad_tokens(const std::vector<at::Tensor>& maps) {
+  int64_t longest = 0;
+  bool equal = true;
+  for (const auto& map : maps) {
+    longest = std::max(longest, map.size(0));
+    equal = equal && map.size(0) == maps[0].size(0);
+  }
+  if (equal) return {torch::stack(maps), {}};
+  const auto batch = static_cast<int64_t>(maps.size());
+  PaddedTokens padded{
+      torch::zeros({batch, longest, maps[0].size(1), maps[0].size(2)}, torch::kLong),
+      torch::zeros({batch, longest}, torch::kBool)};
+  for (int64_t b = 0; b < batch; ++b) {
+    const auto& map = maps[static_cast<size_t>(b)];
+    padded.tokens[b].slice(0, 0, map.size(0)).copy_(map);
+    padded.frame_mask[b].slice(0, 0, map.size(0)).fill_(true);
+  }
+  return padded;
+}
+
+}  // namespace remomask

@@ -1,0 +1,175 @@
+#include "generator/pipeline.h"
+
+#include <torch/types.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/error.h"
+#include "generator/motion_finish.h"
+#include "motion/features.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr double kDefaultSeconds = 5, kLeastSeconds = 1, kMostSeconds = 9.8;
+
+const ModelStage& need_stage(const std::map<std::string, ModelStage>& stages,
+                             const std::string& kind) {
+  const auto found = stages.find(kind);
+  if (found == stages.end()) {
+    throw Error("the model has no stage \"" + kind + "\"; train it first or use a complete model");
+  }
+  return found->second;
+}
+
+void need_equal(int64_t a, int64_t b, const std::string& what) {
+  if (a != b) {
+    throw Error("the stages of this model do not fit together: " + what + " is " +
+                std::to_string(a) + " in one and " + std::to_string(b) + " in another");
+  }
+}
+
+const Skeleton& skeleton_named(const std::string& name) {
+  if (name == "humanml3d") return humanml_skeleton();
+  if (name == "kit") return kit_skeleton();
+  throw Error("unknown skeleton \"" + name + "\"; use humanml3d or kit");
+}
+
+class Stopwatch {
+ public:
+  /// Seconds since the last call.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void copy_vector(const std::vector<float>& values, const at::Tensor& out, int64_t clip_id) {
+  if (static_cast<int64_t>(values.size()) != out.size(0)) {
+    throw Error("clip " + std::to_string(clip_id) + " has a vector of width " +
+                std::to_string(values.size()) + ", the model's retriever makes " +
+                std::to_string(out.size(0)) + ": embed the database with this model first");
+  }
+  std::copy(values.begin(), values.end(), out.data_ptr<float>());
+}
+
+}  // namespace
+
+struct Generator::Impl {
+  Retriever retriever;
+  Tokenizer tokenizer;
+  MaskedTransformer masked;
+  ResidualTransformer residual{nullptr};
+  const Skeleton& skeleton;
+
+  explicit Impl(const std::map<std::string, ModelStage>& stages)
+      : retriever(need_stage(stages, "retriever")),
+        tokenizer(need_stage(stages, "tokenizer")),
+        masked(load_masked(need_stage(stages, "masked"))),
+        skeleton(skeleton_named(tokenizer.config().skeleton)) {
+    const TokenizerConfig& tokens = tokenizer.config();
+    const MaskedConfig& base = masked->config();
+    need_equal(base.rows, tokens.rows, "the number of rows");
+    need_equal(base.codes, tokens.codes, "the number of codes");
+    need_equal(base.embedding_width, retriever.embedding_width(), "the width of the shared space");
+    need_equal(base.text_width, retriever.text_width(), "the width of the text states");
+    if (tokens.levels == 1) return;
+    residual = load_residual(need_stage(stages, "residual"));
+    const ResidualConfig& upper = residual->config();
+    need_equal(upper.rows, tokens.rows, "the number of rows");
+    need_equal(upper.codes, tokens.codes, "the number of codes");
+    need_equal(upper.levels, tokens.levels, "the number of levels");
+    need_equal(upper.embedding_width, retriever.embedding_width(), "the width of the shared space");
+    need_equal(upper.text_width, retriever.text_width(), "the width of the text states");
+  }
+
+  Condition condition(const std::string& prompt, const std::vector<RetrievedMotion>& hits) const {
+    const TextEncoding text = retriever.encode_text({prompt});
+    const auto count = static_cast<int64_t>(hits.size());
+    Condition result;
+    result.text_states = text.states;
+    result.text_mask = text.mask;
+    result.text_query = text.query;
+    result.hit_motion = torch::zeros({1, count, retriever.embedding_width()});
+    result.hit_text = torch::zeros_like(result.hit_motion);
+    result.hit_similarity = torch::zeros({1, count});
+    for (int64_t i = 0; i < count; ++i) {
+      const RetrievedMotion& hit = hits[static_cast<size_t>(i)];
+      copy_vector(hit.motion, result.hit_motion[0][i], hit.clip_id);
+      copy_vector(hit.text, result.hit_text[0][i], hit.clip_id);
+      result.hit_similarity.data_ptr<float>()[i] = static_cast<float>(hit.similarity);
+    }
+    result.hit_mask = torch::ones({1, count}, torch::kBool);
+    result.use_text = torch::full({1}, !prompt.empty(), torch::kBool);
+    result.use_retrieval = torch::full({1}, count > 0, torch::kBool);
+    return result;
+  }
+};
+
+Generator::Generator(const std::map<std::string, ModelStage>& stages)
+    : impl_(std::make_unique<Impl>(stages)) {}
+Generator::~Generator() = default;
+Generator::Generator(Generator&&) noexcept = default;
+Generator& Generator::operator=(Generator&&) noexcept = default;
+
+const Retriever& Generator::retriever() const { return impl_->retriever; }
+const Tokenizer& Generator::tokenizer() const { return impl_->tokenizer; }
+int64_t Generator::max_hits() const { return impl_->masked->config().max_hits; }
+
+int64_t token_frames(const std::optional<double>& seconds, const std::vector<RetrievedMotion>& hits,
+                     double fps) {
+  double length = seconds.value_or(kDefaultSeconds);
+  if (!std::isfinite(length)) throw Error("the length in seconds is not a number");
+  std::vector<int> lengths;
+  for (const auto& hit : hits) {
+    if (hit.frames > 0) lengths.push_back(hit.frames);
+  }
+  if (!seconds && !lengths.empty()) {
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    length = *middle / fps;
+  }
+  length = std::clamp(length, kLeastSeconds, kMostSeconds);
+  return std::clamp<int64_t>(std::llround(length * fps / 4), 1, kLongestTokenMap);
+}
+
+Generated Generator::generate(const std::string& prompt, const std::vector<RetrievedMotion>& hits,
+                              const GenerateOptions& options) const {
+  const torch::NoGradGuard no_grad;
+  Generated result;
+  Stopwatch watch;
+  std::vector<RetrievedMotion> used;
+  if (options.use_retrieval) {
+    used.assign(hits.begin(),
+                hits.begin() + std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(hits.size()),
+                                                        static_cast<std::ptrdiff_t>(max_hits())));
+  }
+  result.hits_used = static_cast<int>(used.size());
+  const int64_t frames = token_frames(options.seconds, used, impl_->skeleton.fps);
+  const Condition condition = impl_->condition(prompt, used);
+  result.times.text = watch.lap();
+
+  const auto base = sample_base(impl_->masked, condition, frames, options.seed, options.sampling);
+  result.times.base = watch.lap();
+  result.tokens = impl_->residual ? sample_residual(impl_->residual, condition, base, options.seed,
+                                                    options.sampling)
+                                  : base.unsqueeze(2);
+  result.times.residual = watch.lap();
+  const Features features = impl_->tokenizer.decode(result.tokens);
+  result.times.decode = watch.lap();
+  result.motion = recover_motion(features, impl_->skeleton);
+  impose_bone_lengths(result.motion, impl_->skeleton);
+  lift_to_floor(result.motion, impl_->skeleton);
+  result.times.finish = watch.lap();
+  return result;
+}
+
+}  // namespace remomask

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "generator/sampling.h"
+#include "generator/tokenizer.h"
+#include "motion/motion.h"
+#include "nn/model_file.h"
+#include "retriever/retriever.h"
+
+namespace remomask {
+
+/// A motion that search found for the prompt.
+struct RetrievedMotion {
+  int64_t clip_id = 0;
+  std::vector<float> motion;  ///< R_m, width E, of the same retriever as the model's
+  std::vector<float> text;    ///< R_t
+  double similarity = 0;      ///< cosine of prompt and motion
+  int frames = 0;             ///< its length at the skeleton's rate; 0: unknown
+};
+
+struct GenerateOptions {
+  /// 1 .. 9.8 s; default: the median length of the hits, 5 s without hits.
+  std::optional<double> seconds;
+  uint64_t seed = 0;
+  bool use_retrieval = true;  ///< false: the hits are not read at all
+  SamplingOptions sampling;
+};
+
+/// Wall time in seconds.
+struct GenerationTimes {
+  double text = 0, base = 0, residual = 0, decode = 0, finish = 0;
+};
+
+struct Generated {
+  Motion motion;      ///< uniform bone lengths, not below the floor
+  at::Tensor tokens;  ///< int64 [T, rows, levels]
+  int hits_used = 0;
+  GenerationTimes times;
+};
+
+/// A whole model: prompt and hits -> motion. Const functions may be called
+/// from several threads. The result is a function of prompt, hits, options and
+/// model alone.
+class Generator {
+ public:
+  /// Needs the stages retriever, tokenizer, masked and residual (the last one
+  /// only where the tokenizer has several levels). Throws Error when one lacks
+  /// or when their sizes do not fit together.
+  explicit Generator(const std::map<std::string, ModelStage>& stages);
+  ~Generator();
+  Generator(Generator&&) noexcept;
+  Generator& operator=(Generator&&) noexcept;
+
+  /// An empty prompt means: no text. At most the model's max_hits best hits are
+  /// used. Throws Error for a hit of another width or seconds that are no number.
+  Generated generate(const std::string& prompt, const std::vector<RetrievedMotion>& hits,
+                     const GenerateOptions& options = {}) const;
+
+  const Retriever& retriever() const;
+  const Tokenizer& tokenizer() const;
+  int64_t max_hits() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Length in token frames (4 poses each): `seconds`, else the median of the
+/// known lengths of the hits, else 5 s; clamped to 1 .. 9.8 s.
+int64_t token_frames(const std::optional<double>& seconds, const std::vector<RetrievedMotion>& hits,
+                     double fps);
+
+}  // namespace remomask

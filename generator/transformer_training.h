@@ -1,0 +1,34 @@
+#pragma once
+
+#include "base/progress.h"
+#include "generator/generator_data.h"
+#include "generator/masked_transformer.h"
+#include "generator/residual_transformer.h"
+#include "nn/trainer.h"
+
+namespace remomask {
+
+struct TransformerTrainingOptions {
+  TrainerOptions trainer;
+  int64_t batch = 64;
+  double noise_hits = 0.1;          ///< share of hits replaced by distant ranks
+  double text_drop = 0.1;           ///< residual model: share of samples without text
+  double history_corruption = 0.0;  ///< residual model: share of lower tokens made random
+  int64_t validate_every = 500;
+  size_t validation_clips = 256;  ///< at most so many, evenly spread
+};
+
+/// Trains the masked transformer on the base level. Masks (masking.h), drops
+/// of conditions, hits, captions and frame offsets are functions of (seed,
+/// step, sample). Validation reports loss and accuracy on `val` with both
+/// conditions, and the accuracy with text alone. Sizes of map, text and
+/// embedding are taken from the data; the history is in config["history"].
+ModelStage train_masked(MaskedConfig config, const GeneratorData& data,
+                        const TransformerTrainingOptions& options, const Monitor& monitor);
+
+/// Trains the residual transformer on levels drawn uniformly from 1 ..
+/// levels-1, given the true levels below.
+ModelStage train_residual(ResidualConfig config, const GeneratorData& data,
+                          const TransformerTrainingOptions& options, const Monitor& monitor);
+
+}  // namespace remomask
