@@ -17,7 +17,7 @@ struct QuantizerOptions {
 /// How the codebooks learn; not part of the network's identity.
 struct CodebookTraining {
   double decay = 0.99;            ///< mu of the moving averages
-  int64_t reset_every = 100;      ///< steps between searches for dead codes; 0: never
+  int64_t reset_every = 25;       ///< steps between searches for dead codes; 0: never
   double dead_share = 0.1;        ///< a code is dead below this share of the mean use
   double level_dropout = 0.2;     ///< chance that only the first s levels, s uniform, are used
   double sample_temperature = 0;  ///< stochastic assignment: temperature in units of the mean

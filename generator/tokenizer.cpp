@@ -37,11 +37,15 @@ struct Tokenizer::Impl {
   std::string hash;
 
   explicit Impl(const ModelStage& stage)
-      : network(tokenizer_config(stage)), hash(stage_hash(stage)) {
-    load_module_tensors(*network, stage.tensors, "tokenizer");
-    network->eval();
-  }
+      : network(load_tokenizer_network(stage)), hash(stage_hash(stage)) {}
 };
+
+TokenizerNetwork load_tokenizer_network(const ModelStage& stage) {
+  TokenizerNetwork network(tokenizer_config(stage));
+  load_module_tensors(*network, stage.tensors, "tokenizer");
+  network->eval();
+  return network;
+}
 
 Tokenizer::Tokenizer(const ModelStage& stage) : impl_(std::make_unique<Impl>(stage)) {}
 Tokenizer::~Tokenizer() = default;

@@ -25,7 +25,7 @@ struct TokenizerConfig {
   /// patches of 4, 2 or 1 frames, every further one halves time, so that the
   /// last is T/4: {w} is one linear patch of 4 frames; {512, 512, 512} are
   /// MoMask's convolutions.
-  std::vector<int64_t> widths = {192};
+  std::vector<int64_t> widths = {128};
   std::vector<int64_t> blocks = {6};  ///< residual blocks at each time scale
   int64_t dilation_growth = 3;        ///< three neighbouring blocks: growth^2, growth, 1
   int64_t mixer_width = 512;          ///< hidden width of the exchange between rows; 0: none

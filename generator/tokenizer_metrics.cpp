@@ -2,7 +2,6 @@
 
 #include <torch/types.h>
 
-#include "generator/feature_layout.h"
 #include "generator/length_batches.h"
 #include "generator/motion_recovery.h"
 
@@ -14,56 +13,43 @@ constexpr double kMillimetres = 1000;
 constexpr double kStandingSpeed = 0.005;  // of the original's foot, a frame
 constexpr size_t kMetricBatch = 64;
 
-/// Sums over frames; divided at the end.
-class ErrorSums {
- public:
-  explicit ErrorSums(const Skeleton& skeleton) : skeleton_(skeleton) {
-    feet_.assign(skeleton.left_feet.begin(), skeleton.left_feet.end());
-    feet_.insert(feet_.end(), skeleton.right_feet.begin(), skeleton.right_feet.end());
-  }
-
-  /// World positions [B, T, J, 3].
-  void add(const at::Tensor& output, const at::Tensor& target) {
-    frames_ += static_cast<double>(output.size(0) * output.size(1));
-    const auto joint_error = [](const at::Tensor& error) {
-      return error.norm(2, -1).mean(-1).sum().item<double>();
-    };
-    mpjpe_ += joint_error((output - output.slice(2, 0, 1)) - (target - target.slice(2, 0, 1)));
-    global_ += joint_error(output - target);
-    bones_ += (bone_lengths(output, skeleton_) - bone_lengths(target, skeleton_))
-                  .abs()
-                  .mean(-1)
-                  .sum()
-                  .item<double>();
-    const auto index = torch::tensor(feet_, torch::kLong);
-    const auto steps = [&](const at::Tensor& positions) {
-      const auto feet = positions.index_select(2, index);
-      return feet.slice(1, 1) - feet.slice(1, 0, feet.size(1) - 1);
-    };
-    const auto standing = (steps(target).norm(2, -1) < kStandingSpeed).to(torch::kFloat);
-    const auto across = steps(output).index_select(-1, torch::tensor({0, 2})).norm(2, -1);
-    skate_ += (across * standing).sum().item<double>();
-    standing_ += standing.sum().item<double>();
-  }
-
-  ReconstructionErrors errors() const {
-    ReconstructionErrors result;
-    if (frames_ > 0) {
-      result.mpjpe = kMillimetres * mpjpe_ / frames_;
-      result.global_mpjpe = kMillimetres * global_ / frames_;
-      result.bone_length = kMillimetres * bones_ / frames_;
-    }
-    if (standing_ > 0) result.foot_skate = kMillimetres * skate_ / standing_;
-    return result;
-  }
-
- private:
-  const Skeleton& skeleton_;
-  std::vector<int64_t> feet_;
-  double frames_ = 0, mpjpe_ = 0, global_ = 0, bones_ = 0, skate_ = 0, standing_ = 0;
-};
-
 }  // namespace
+
+ReconstructionSums::ReconstructionSums(const Skeleton& skeleton)
+    : skeleton_(skeleton), feet_(skeleton.left_feet.begin(), skeleton.left_feet.end()) {
+  feet_.insert(feet_.end(), skeleton.right_feet.begin(), skeleton.right_feet.end());
+}
+
+void ReconstructionSums::add(const at::Tensor& output, const at::Tensor& target) {
+  frames_ += static_cast<double>(output.size(0) * output.size(1));
+  const auto joint_error = [](const at::Tensor& error) {
+    return error.norm(2, -1).mean(-1).sum().item<double>();
+  };
+  mpjpe_ += joint_error((output - output.slice(2, 0, 1)) - (target - target.slice(2, 0, 1)));
+  global_ += joint_error(output - target);
+  const auto bone_error = bone_lengths(output, skeleton_) - bone_lengths(target, skeleton_);
+  bones_ += bone_error.abs().mean(-1).sum().item<double>();
+  const auto index = torch::tensor(feet_, torch::kLong);
+  const auto steps = [&](const at::Tensor& positions) {
+    const auto feet = positions.index_select(2, index);
+    return feet.slice(1, 1) - feet.slice(1, 0, feet.size(1) - 1);
+  };
+  const auto standing = (steps(target).norm(2, -1) < kStandingSpeed).to(torch::kFloat);
+  const auto across = steps(output).index_select(-1, torch::tensor({0, 2})).norm(2, -1);
+  skate_ += (across * standing).sum().item<double>();
+  standing_ += standing.sum().item<double>();
+}
+
+ReconstructionErrors ReconstructionSums::errors() const {
+  ReconstructionErrors result;
+  if (frames_ > 0) {
+    result.mpjpe = kMillimetres * mpjpe_ / frames_;
+    result.global_mpjpe = kMillimetres * global_ / frames_;
+    result.bone_length = kMillimetres * bones_ / frames_;
+  }
+  if (standing_ > 0) result.foot_skate = kMillimetres * skate_ / standing_;
+  return result;
+}
 
 TokenizerMetrics measure_tokenizer(TokenizerNetwork& network,
                                    const std::vector<const Features*>& clips) {
@@ -71,7 +57,7 @@ TokenizerMetrics measure_tokenizer(TokenizerNetwork& network,
   const TokenizerConfig& config = network->config();
   const Skeleton& skeleton = network->skeleton();
   const int64_t groups = network->quantizer()->options().groups;
-  ErrorSums all(skeleton), base(skeleton);
+  ReconstructionSums all(skeleton), base(skeleton);
   TokenizerMetrics metrics;
   auto hits = torch::zeros({config.levels, groups, config.codes}, torch::kDouble);
   for (const LengthBatch& batch : batches_by_length(clips, kFramesPerToken, kMetricBatch)) {

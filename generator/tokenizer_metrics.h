@@ -20,6 +20,22 @@ struct ReconstructionErrors {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReconstructionErrors, mpjpe, global_mpjpe, bone_length,
                                    foot_skate)
 
+/// Adds up the errors of several batches.
+class ReconstructionSums {
+ public:
+  explicit ReconstructionSums(const Skeleton& skeleton);
+
+  /// World positions [B, T, J, 3] in metres; every frame is real.
+  void add(const at::Tensor& output, const at::Tensor& target);
+  /// Means so far; all zero before the first batch.
+  ReconstructionErrors errors() const;
+
+ private:
+  const Skeleton& skeleton_;
+  std::vector<int64_t> feet_;
+  double frames_ = 0, mpjpe_ = 0, global_ = 0, bones_ = 0, skate_ = 0, standing_ = 0;
+};
+
 struct TokenizerMetrics {
   int64_t clips = 0, frames = 0;
   ReconstructionErrors all_levels, base_level;

@@ -102,4 +102,8 @@ class TokenizerNetworkImpl : public torch::nn::Module {
 };
 TORCH_MODULE(TokenizerNetwork);
 
+/// The network of a stage, in eval mode. Throws Error for another kind or
+/// tensors that do not fit.
+TokenizerNetwork load_tokenizer_network(const ModelStage& stage);
+
 }  // namespace remomask

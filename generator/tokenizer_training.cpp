@@ -46,8 +46,9 @@ std::map<std::string, double> validation_figures(const TokenizerMetrics& metrics
 }
 
 // What makes a run the same run, for resuming.
-nlohmann::json run_identity(const TokenizerConfig& config, const TokenizerTrainingOptions& options,
-                            const std::vector<const Features*>& clips) {
+nlohmann::json tokenizer_run_identity(const TokenizerConfig& config,
+                                      const TokenizerTrainingOptions& options,
+                                      const std::vector<const Features*>& clips) {
   int64_t frames = 0;
   for (const Features* clip : clips) frames += clip->frames;
   const CodebookTraining& codebooks = options.codebooks;
@@ -122,7 +123,7 @@ ModelStage train_tokenizer(const std::vector<TrainingClip>& train,
                            options.loss);
   const WindowSampler sampler(clips, {options.window, options.batch_frames, options.long_share});
 
-  Trainer trainer(*network, options.trainer, run_identity(config, options, clips));
+  Trainer trainer(*network, options.trainer, tokenizer_run_identity(config, options, clips));
   if (!validation_clips.empty()) {
     trainer.set_validation(options.validate_every, [&](int64_t) {
       return validation_figures(measure_tokenizer(network, validation_clips));

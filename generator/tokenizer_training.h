@@ -26,7 +26,9 @@ struct TokenizerTrainingOptions {
 
   TokenizerTrainingOptions() {
     trainer.stage_name = "tokenizer";
-    trainer.learning_rate = 5e-4;
+    trainer.steps = 3500;
+    trainer.learning_rate = 1e-3;
+    trainer.warmup_steps = 100;
     trainer.ema_decay = 0.99;
   }
 };
