@@ -87,13 +87,13 @@ std::vector<TrainingClip> load_training_set(const Database& database,
   std::vector<LoadedClip> loaded;
   const Skeleton* skeleton = nullptr;
   std::string skeleton_clip;
+  const auto listed = [](const std::vector<std::string>& wanted_names, const std::string& name) {
+    return std::find(wanted_names.begin(), wanted_names.end(), name) != wanted_names.end();
+  };
   // Numbered over all clips, so that sets of different splits agree.
   std::unordered_map<std::string, int> groups;
   for (const Clip& clip : clips) {
     const int group = groups.emplace(clip.group, static_cast<int>(groups.size())).first->second;
-    const auto listed = [](const std::vector<std::string>& names, const std::string& name) {
-      return std::find(names.begin(), names.end(), name) != names.end();
-    };
     const bool wanted = listed(options.splits, clip.split) &&
                         (options.sources.empty() || listed(options.sources, clip.source));
     if (!wanted || clip.frames < options.min_frames) continue;
