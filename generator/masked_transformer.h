@@ -19,8 +19,8 @@ struct MaskedConfig {
   int64_t codes = 256;  ///< entries of the base codebook of every row
   int64_t width = 256;
   int64_t heads = 4;
-  int64_t layers = 6;
-  int64_t hidden = 1024;
+  int64_t layers = 4;
+  int64_t hidden = 512;
   double dropout = 0.1;
   int64_t text_width = 256;       ///< of the text tower's token states
   int64_t embedding_width = 256;  ///< of the shared text-motion space

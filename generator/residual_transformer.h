@@ -20,8 +20,8 @@ struct ResidualConfig {
   int64_t codes = 256;
   int64_t width = 256;
   int64_t heads = 4;
-  int64_t layers = 5;
-  int64_t hidden = 1024;
+  int64_t layers = 4;
+  int64_t hidden = 512;
   double dropout = 0.1;
   int64_t text_width = 256;
   int64_t embedding_width = 256;
