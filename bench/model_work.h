@@ -1,0 +1,39 @@
+#pragma once
+
+#include "generator/sampling.h"
+#include "generator/ssta.h"
+#include "generator/tokenizer.h"
+
+namespace remomask {
+
+/// Floating-point operations of matrix products, two for each multiply and add;
+/// everything else of a network is small beside them and not counted.
+
+/// How many rows of text and hits a condition of one sample has.
+struct ConditionSize {
+  int64_t text_tokens;  ///< S
+  int64_t hits;         ///< k, not read without retrieval
+};
+
+/// SstaStack::prepare() for one sample.
+double prepare_flops(const SstaConfig& config, int64_t layers, const ConditionSize& condition);
+/// SstaStack::forward() for one sample of `frames` token frames.
+double stack_flops(const SstaConfig& config, int64_t layers, const ConditionSize& condition,
+                   int64_t frames);
+
+/// The stacks inside the two transformers.
+SstaConfig stack_config(const MaskedConfig& config);
+SstaConfig stack_config(const ResidualConfig& config);
+
+/// sample_base() and sample_residual() of `frames` token frames.
+double sample_base_flops(const MaskedConfig& config, const SamplingOptions& options,
+                         const ConditionSize& condition, int64_t frames);
+double sample_residual_flops(const ResidualConfig& config, const SamplingOptions& options,
+                             const ConditionSize& condition, int64_t frames);
+
+/// Tokenizer::encode() and decode() of 4 `frames` poses. Throws Error for a
+/// tokenizer of several time scales.
+double encode_flops(const TokenizerConfig& config, int64_t frames);
+double decode_flops(const TokenizerConfig& config, int64_t frames);
+
+}  // namespace remomask

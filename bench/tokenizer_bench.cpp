@@ -1,0 +1,59 @@
+// The tokenizer of preset base (random weights) on 196 frames: features to
+// tokens and back. Floor: its matrix products at the GEMM peak of as many threads.
+
+#include <benchmark/benchmark.h>
+#include <torch/types.h>
+
+#include "base/machine.h"
+#include "bench/long_walk.h"
+#include "bench/machine_peak.h"
+#include "bench/model_work.h"
+#include "bench/random_model.h"
+#include "generator/ssta.h"
+#include "generator/tokenizer_network.h"
+#include "nn/device.h"
+
+namespace remomask {
+namespace {
+
+constexpr int kFrames = static_cast<int>(kLongestTokenMap * kFramesPerToken);
+
+const Tokenizer& base_tokenizer() {
+  static const Tokenizer tokenizer = [] {
+    torch::manual_seed(1);
+    return Tokenizer(random_tokenizer_stage(model_preset("base").tokenizer));
+  }();
+  return tokenizer;
+}
+
+void encode(benchmark::State& state) {
+  set_compute_threads(static_cast<int>(state.range(0)));
+  const Tokenizer& tokenizer = base_tokenizer();
+  const Features features =
+      extract_features_all_frames(long_walk(kFrames), humanml_skeleton(), FeatureMode::fixed);
+  for (auto _ : state) benchmark::DoNotOptimize(tokenizer.encode(features));
+  state.SetItemsProcessed(state.iterations() * kFrames);
+  report_arithmetic(state, encode_flops(tokenizer.config(), kLongestTokenMap));
+}
+
+void decode(benchmark::State& state) {
+  set_compute_threads(static_cast<int>(state.range(0)));
+  const Tokenizer& tokenizer = base_tokenizer();
+  const TokenizerConfig& config = tokenizer.config();
+  const at::Tensor tokens =
+      torch::randint(config.codes, {kLongestTokenMap, config.rows, config.levels}, torch::kLong);
+  for (auto _ : state) benchmark::DoNotOptimize(tokenizer.decode(tokens));
+  state.SetItemsProcessed(state.iterations() * kFrames);
+  report_arithmetic(state, decode_flops(config, kLongestTokenMap));
+}
+
+void one_and_all_threads(benchmark::internal::Benchmark* bench) {
+  bench->ArgName("threads")->Arg(1);
+  if (available_cpus() > 1) bench->Arg(available_cpus());
+}
+
+BENCHMARK(encode)->Apply(one_and_all_threads)->Apply(with_medians);
+BENCHMARK(decode)->Apply(one_and_all_threads)->Apply(with_medians);
+
+}  // namespace
+}  // namespace remomask
