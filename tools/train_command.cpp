@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 struct TrainOptions {
   std::string stage, database, folder, preset = "base", queues = "both";
   std::vector<std::string> captions, sources;
-  std::optional<int64_t> steps, batch;
+  std::optional<int64_t> steps, batch, queue_size;
   std::optional<double> learning_rate;
   uint64_t seed = 1;
 };
@@ -136,6 +136,7 @@ class TrainingRun {
     auto options = adjusted(RetrieverTrainingOptions(options_.preset), "retriever");
     if (options_.batch) options.batch = *options_.batch;
     options.queues = parse_queues(options_.queues);
+    if (options_.queue_size) options.queue_size = *options_.queue_size;
     return train_retriever(clips("train"), clips("val"), text, preset_.retriever, options,
                            monitor_);
   }
@@ -211,6 +212,11 @@ void register_train(CLI::App& app, Program& program) {
   command->add_option("--queues", options->queues, "negatives of the retriever besides the batch")
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "motion", "text", "both"}));
+  command
+      ->add_option("--queue-size", options->queue_size,
+                   "entries of each queue; default: of the "
+                   "preset")
+      ->check(CLI::PositiveNumber);
   command->callback([options, &program] { TrainingRun(*options, program).run(); });
 }
 

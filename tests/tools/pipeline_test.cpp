@@ -1,0 +1,177 @@
+// The whole road with the program itself, on motions that it makes: database,
+// training of every network (preset tiny), index, search, generation,
+// evaluation. One model is trained for all tests.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/file.h"
+#include "tests/tools/program_runner.h"
+
+namespace remomask {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PipelineTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch_ = new ScratchFolder;
+    run_json({"procedural", "--db", path("motions.sqlite"), "--count", "120"});
+    const ProgramResult trained = run_program(train_arguments("run"));
+    ASSERT_EQ(trained.exit_code, 0) << trained.errors;
+    run_json({"index", path("motions.sqlite"), "--model", path("run/model.safetensors")});
+  }
+  static void TearDownTestSuite() {
+    delete scratch_;
+    scratch_ = nullptr;
+  }
+
+  static std::string path(const std::string& name) { return scratch_->path(name); }
+  static std::vector<std::string> train_arguments(const std::string& folder) {
+    return {"--quiet",  "train", "all", "--db",      path("motions.sqlite"),
+            "--preset", "tiny",  "-o",  path(folder)};
+  }
+  static std::vector<std::string> with_model(std::vector<std::string> arguments) {
+    for (const std::string& word : {std::string("--db"), path("motions.sqlite"),
+                                    std::string("--model"), path("run/model.safetensors")}) {
+      arguments.push_back(word);
+    }
+    return arguments;
+  }
+
+  static ScratchFolder* scratch_;
+};
+
+ScratchFolder* PipelineTest::scratch_ = nullptr;
+
+TEST_F(PipelineTest, ModelHoldsAllStagesAndSaysSo) {
+  const auto info = run_json({"info", path("run/model.safetensors")});
+  for (const char* stage : {"retriever", "tokenizer", "masked", "residual"}) {
+    EXPECT_TRUE(info["stages"].contains(stage)) << stage;
+  }
+}
+
+TEST_F(PipelineTest, KilledTrainingResumesToTheSameModel) {
+  // Stopped again and again, by Ctrl-C and by SIGKILL; the time is long enough
+  // for the start of the program and some steps.
+  ProgramResult result;
+  int rounds = 0;
+  do {
+    const bool kill = rounds % 2 == 1;
+    result =
+        run_program(train_arguments("killed"), {}, rounds < 6 ? 2.5 : 0, kill ? SIGKILL : SIGINT);
+    ++rounds;
+  } while (result.exit_code != 0 && rounds < 30);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_GT(rounds, 1);
+  EXPECT_EQ(read_file(path("killed/model.safetensors")), read_file(path("run/model.safetensors")));
+}
+
+TEST_F(PipelineTest, SearchFiltersAndExplains) {
+  const auto found = run_json(with_model({"search", "a person waves", "-k", "5"}));
+  ASSERT_EQ(found["hits"].size(), 5u);
+  double before = 2;
+  for (const auto& hit : found["hits"]) {
+    EXPECT_LE(hit["similarity"], before);
+    before = hit["similarity"];
+    EXPECT_FALSE(hit["captions"].empty());
+  }
+  const auto squats = run_json(with_model(
+      {"search", "a person waves", "-k", "50", "--label", "content=squat", "--split", "train"}));
+  ASSERT_FALSE(squats["hits"].empty());
+  for (const auto& hit : squats["hits"]) {
+    EXPECT_NE(hit["clip"].get<std::string>().find("squat"), std::string::npos);
+    EXPECT_EQ(hit["split"], "train");
+  }
+}
+
+TEST_F(PipelineTest, SameSeedSameMotionForAnyThreadsAndCount) {
+  const auto generate = [&](const std::string& file, std::vector<std::string> more) {
+    std::vector<std::string> arguments =
+        with_model({"generate", "a person walks forward", "--seconds", "3", "-o", path(file)});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_json(arguments);
+  };
+  generate("one.npy", {"--seed", "5", "--threads", "1"});
+  generate("four.npy", {"--seed", "5", "--threads", "4"});
+  generate("many.npy", {"--seed", "4", "-n", "3", "--threads", "2"});
+  const std::string expected = read_file(path("one.npy"));
+  EXPECT_EQ(expected, read_file(path("four.npy")));
+  EXPECT_EQ(expected, read_file(path("many-2.npy")));
+  EXPECT_NE(expected, read_file(path("many-1.npy")));
+}
+
+TEST_F(PipelineTest, GeneratedFileCarriesItsEvidence) {
+  const auto made =
+      run_json(with_model({"generate", "someone kicks with the left leg", "--seed", "3", "-o",
+                           path("kick.bvh"), "--sheet", path("kick.png")}));
+  const auto& motion = made["motions"][0];
+  ASSERT_FALSE(motion["evidence"].empty());
+  EXPECT_TRUE(motion["evidence"][0].contains("licence"));
+  const auto stored = nlohmann::json::parse(read_file(path("kick.bvh.json")));
+  EXPECT_EQ(stored["prompt"], "someone kicks with the left leg");
+  EXPECT_EQ(stored["seed"], "3");
+  EXPECT_EQ(nlohmann::json::parse(stored["evidence"].get<std::string>()), motion["evidence"]);
+  EXPECT_EQ(read_file(path("kick.png")).substr(1, 3), "PNG");
+  const auto back = run_json({"convert", path("kick.bvh"), path("kick.npy")});
+  EXPECT_EQ(back["frames"], motion["frames"]);
+  const auto alone = run_json(with_model({"generate", "someone kicks with the left leg", "--seed",
+                                          "3", "--no-retrieval", "-o", path("alone.bvh")}));
+  EXPECT_TRUE(alone["motions"][0]["evidence"].empty());
+  EXPECT_NE(read_file(path("alone.bvh")), read_file(path("kick.bvh")));
+}
+
+TEST_F(PipelineTest, EvaluationsReportTheirProtocol) {
+  const auto retrieval = run_json([&] {
+    auto arguments = with_model({"evaluate", "retrieval"});
+    return arguments;
+  }());
+  EXPECT_FALSE(retrieval["protocol"].get<std::string>().empty());
+  const auto tokenizer = run_json(with_model({"evaluate", "tokenizer"}));
+  EXPECT_GT(tokenizer["all_levels"]["mpjpe"].get<double>(), 0);
+  const auto generation = run_json(with_model(
+      {"evaluate", "generation", "--prompts", "4", "--results", path("outcomes.jsonl")}));
+  EXPECT_EQ(generation["prompts"], 4);
+  EXPECT_EQ(generation["physical"]["not_finite"], 0);
+}
+
+TEST_F(PipelineTest, StaleIndexIsRefusedWithTheRemedy) {
+  fs::copy_file(path("motions.sqlite"), path("copy.sqlite"));
+  fs::copy_file(path("motions.sqlite.index"), path("copy.sqlite.index"));
+  const std::vector<std::string> search = {
+      "search", "walk", "--db", path("copy.sqlite"), "--model", path("run/model.safetensors")};
+  EXPECT_EQ(run_program(search).exit_code, 0);
+  run_json({"procedural", "--db", path("copy.sqlite"), "--count", "3", "--seed", "9"});
+  const ProgramResult stale = run_program(search);
+  EXPECT_EQ(stale.exit_code, 1);
+  EXPECT_NE(stale.errors.find("remomask index"), std::string::npos) << stale.errors;
+}
+
+TEST_F(PipelineTest, ModelOfAnotherPresetIsRefused) {
+  const ProgramResult result =
+      run_program({"--quiet", "train", "masked", "--db", path("motions.sqlite"), "--preset", "tiny",
+                   "-o", path("nothing")});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.errors.find("tokenizer.safetensors"), std::string::npos) << result.errors;
+  const ProgramResult missing = run_program(
+      with_model({"generate", "walk", "-o", path("x.bvh"), "--index", path("none.index")}));
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_NE(missing.errors.find("none.index"), std::string::npos);
+  EXPECT_FALSE(fs::exists(path("x.bvh")));
+}
+
+TEST_F(PipelineTest, ExtremePromptsWork) {
+  std::string endless;
+  while (endless.size() < 10000) endless += "a person walks and waves ";
+  const ProgramResult result =
+      run_program(with_model({"generate", endless, "--seconds", "2", "-o", path("long.bvh")}));
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.errors.find("warning"), std::string::npos);
+  EXPECT_EQ(run_program(with_model({"generate", "", "-o", path("e.bvh")})).exit_code, 1);
+}
+
+}  // namespace
+}  // namespace remomask
