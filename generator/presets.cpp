@@ -24,7 +24,7 @@ void set_sizes(ResidualConfig& config, int64_t width, int64_t heads, int64_t lay
 /// MoMask's convolutions, which ReMoMask's tokenizer keeps, with given codes.
 void set_convolutions(TokenizerConfig& config, int64_t width, int64_t codes, int64_t code_width) {
   config.widths = {width, width, width};
-  config.blocks = {3, 3, 3};
+  config.blocks = {0, 3, 3};
   config.dropout = 0.2;
   config.codes = codes;
   config.code_width = code_width;
