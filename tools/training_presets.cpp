@@ -11,6 +11,7 @@ TransformerTrainingOptions transformer_preset(const std::string& preset, const c
   TransformerTrainingOptions options;
   options.trainer.stage_name = stage;
   options.trainer.steps = base_steps;
+  options.batch = 32;
   options.trainer.learning_rate = 6e-4;
   options.trainer.warmup_steps = 100;
   options.trainer.ema_decay = 0.99;
@@ -33,6 +34,7 @@ TransformerTrainingOptions transformer_preset(const std::string& preset, const c
 
 TextTrainingOptions text_training_preset(const std::string& preset) {
   TextTrainingOptions options;
+  options.trainer.steps = 800;
   if (preset == "tiny") {
     options.trainer.steps = 40;
     options.batch = 16;
@@ -42,10 +44,6 @@ TextTrainingOptions text_training_preset(const std::string& preset) {
 
 TokenizerTrainingOptions tokenizer_training_preset(const std::string& preset) {
   TokenizerTrainingOptions options;
-  options.trainer.steps = 3000;
-  options.trainer.learning_rate = 1e-3;
-  options.trainer.warmup_steps = 100;
-  options.codebooks.reset_every = 25;
   if (preset == "tiny") {
     options.trainer.steps = 120;
     options.trainer.learning_rate = 2e-3;
@@ -62,11 +60,11 @@ TokenizerTrainingOptions tokenizer_training_preset(const std::string& preset) {
 }
 
 TransformerTrainingOptions masked_training_preset(const std::string& preset) {
-  return transformer_preset(preset, "masked", 3000);
+  return transformer_preset(preset, "masked", 2800);
 }
 
 TransformerTrainingOptions residual_training_preset(const std::string& preset) {
-  return transformer_preset(preset, "residual", 2000);
+  return transformer_preset(preset, "residual", 1500);
 }
 
 }  // namespace remomask
