@@ -104,12 +104,7 @@ void register_generate(CLI::App& app, Program& program) {
                          {"generator", workspace.identity()},
                          {"seconds_of_work", seconds},
                          {"evidence", evidence}});
-      std::string subtitle;
-      for (const SearchHit& hit : made.hits) {
-        subtitle += (subtitle.empty() ? "retrieved: " : "; ") +
-                    fmt::format("{} ({:.2f})", hit.clip.name, hit.similarity);
-      }
-      rows.push_back({options->prompt, subtitle, made.generated.motion});
+      rows.push_back({options->prompt, evidence_line(evidence), made.generated.motion});
       if (!program.json) {
         fmt::print("{}: {} frames ({:.1f} s of motion) in {:.2f} s, seed {}\n", path,
                    made.generated.motion.frames, made.generated.motion.frames / 20.0, seconds,

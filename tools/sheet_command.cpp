@@ -3,11 +3,31 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "motion/motion_file.h"
 #include "tools/contact_sheet.h"
 #include "tools/program.h"
+#include "tools/workspace.h"
 
 namespace remomask {
+
+namespace {
+
+/// Title and subtitle of a row: prompt and retrieved clips where the motion was
+/// generated (FILE.json beside it), else the name of the file.
+void label_row(const std::string& path, SheetRow& row) {
+  row.title = std::filesystem::path(path).filename().string();
+  if (!std::filesystem::exists(path + ".json")) return;
+  try {
+    const auto stored = nlohmann::json::parse(read_file(path + ".json"));
+    row.title = stored.at("prompt").get<std::string>();
+    row.subtitle = evidence_line(nlohmann::json::parse(stored.at("evidence").get<std::string>()));
+  } catch (const nlohmann::json::exception& error) {
+    throw FileError(path + ".json", 0, std::string("is not what generate writes: ") + error.what());
+  }
+}
+
+}  // namespace
 
 void register_sheet(CLI::App& app, Program& program) {
   struct Options {
@@ -20,7 +40,8 @@ void register_sheet(CLI::App& app, Program& program) {
                                   "remomask sheet walk.bvh wave.npy -o sheet.png");
   command->add_option("inputs", options->inputs, "motion files, one row each")->required();
   command->add_option("-o,--output", options->output, "picture (.png)")->required();
-  command->add_option("--title", options->titles, "title of each row; default: the file name");
+  command->add_option("--title", options->titles,
+                      "title of each row; default: prompt or file name");
   command->add_option("--heading", options->sheet.heading, "above all rows");
   command->add_option("--poses", options->sheet.poses, "poses in a row")->capture_default_str();
   command->callback([options, &program] {
@@ -29,10 +50,11 @@ void register_sheet(CLI::App& app, Program& program) {
     }
     std::vector<SheetRow> rows;
     for (size_t i = 0; i < options->inputs.size(); ++i) {
-      const std::string& input = options->inputs[i];
-      rows.push_back({i < options->titles.size() ? options->titles[i]
-                                                 : std::filesystem::path(input).filename().string(),
-                      "", load_motion_file(input).motion});
+      SheetRow row;
+      label_row(options->inputs[i], row);
+      if (i < options->titles.size()) row.title = options->titles[i];
+      row.motion = load_motion_file(options->inputs[i]).motion;
+      rows.push_back(row);
     }
     write_contact_sheet(options->output, rows, options->sheet);
     if (program.json) return program.print_json({{"output", options->output}});

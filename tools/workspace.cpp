@@ -1,5 +1,7 @@
 #include "tools/workspace.h"
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 
 namespace remomask {
@@ -80,6 +82,16 @@ nlohmann::json hits_json(const std::vector<SearchHit>& hits) {
                     {"seconds", clip_seconds(hit.clip)}});
   }
   return list;
+}
+
+std::string evidence_line(const nlohmann::json& hits) {
+  std::string line;
+  for (const auto& hit : hits) {
+    line += (line.empty() ? "retrieved: " : ", ") + fmt::format("{} ({:.2f})",
+                                                                hit.at("clip").get<std::string>(),
+                                                                hit.at("similarity").get<double>());
+  }
+  return line;
 }
 
 }  // namespace remomask

@@ -60,4 +60,7 @@ const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
 /// Evidence as it is printed and stored in generated files.
 nlohmann::json hits_json(const std::vector<SearchHit>& hits);
 
+/// Such evidence in one line: "retrieved: NAME (0.81), ..."; empty without hits.
+std::string evidence_line(const nlohmann::json& hits);
+
 }  // namespace remomask
