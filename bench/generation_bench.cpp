@@ -16,7 +16,7 @@
 #include "bench/model_work.h"
 #include "bench/random_model.h"
 #include "generator/pipeline.h"
-#include "nn/device.h"
+#include "nn/threads.h"
 #include "nn/model_file.h"
 
 namespace remomask {

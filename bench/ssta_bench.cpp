@@ -10,7 +10,7 @@
 #include "bench/machine_peak.h"
 #include "bench/model_work.h"
 #include "generator/presets.h"
-#include "nn/device.h"
+#include "nn/threads.h"
 
 namespace remomask {
 namespace {

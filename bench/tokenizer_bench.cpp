@@ -11,7 +11,7 @@
 #include "bench/random_model.h"
 #include "generator/ssta.h"
 #include "generator/tokenizer_network.h"
-#include "nn/device.h"
+#include "nn/threads.h"
 
 namespace remomask {
 namespace {

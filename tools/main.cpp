@@ -6,7 +6,7 @@
 #include <new>
 
 #include "base/error.h"
-#include "nn/device.h"
+#include "nn/threads.h"
 #include "tools/program.h"
 
 namespace remomask {
@@ -26,7 +26,6 @@ int run(int argc, char** argv) {
   app.add_flag("--quiet", program.quiet, "no progress");
   app.add_option("--threads", program.threads, "CPU threads; 0: all available")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--device", program.device, "cpu, cuda or cuda:N")->capture_default_str();
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 ok, 1 failed, 2 wrong usage. \"remomask COMMAND --help\" shows the\n"

@@ -35,12 +35,15 @@ void register_procedural(CLI::App& app, Program& program) {
     database.begin();
     for (const ProceduralClip& made : clips) {
       Clip clip;
-      clip.name = made.name;
+      // Every seed makes clips of the same kinds and numbers: names must differ.
+      clip.name = options->make.seed == ProceduralOptions().seed
+                      ? made.name
+                      : fmt::format("{}@{}", made.name, options->make.seed);
       clip.source = "procedural";
-      clip.source_file = made.name;
+      clip.source_file = clip.name;
       clip.split = made.split;
       clip.licence = "MIT";
-      clip.group = "procedural/" + made.name;
+      clip.group = "procedural/" + clip.name;
       clip.content_hash = clip_content_hash(made.motion);
       clip.frames = made.motion.frames;
       clip.captions = made.captions;

@@ -15,7 +15,6 @@ class Program {
   bool json = false;   ///< --json: one JSON document on standard output
   bool quiet = false;  ///< --quiet: no progress
   int threads = 0;     ///< --threads: 0 for all available CPUs
-  std::string device = "cpu";
 
   /// Progress on standard error (a bar with an ETA on a terminal, plain lines
   /// otherwise) and a stop token that Ctrl-C requests.

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <torch/types.h>
 
-#include "nn/device.h"
+#include "nn/threads.h"
 
 namespace remomask {
 namespace {

@@ -10,7 +10,7 @@
 #include "generator/presets.h"
 #include "generator/tokenizer_training.h"
 #include "generator/transformer_training.h"
-#include "nn/device.h"
+#include "nn/threads.h"
 #include "retriever/training.h"
 #include "tokenizer_test_tools.h"
 

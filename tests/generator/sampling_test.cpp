@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "condition_test_tools.h"
-#include "nn/device.h"
+#include "nn/threads.h"
 
 namespace remomask {
 namespace {

@@ -10,7 +10,7 @@
 #include "generator/tokenizer_metrics.h"
 #include "generator/tokenizer_network.h"
 #include "generator/tokenizer_training.h"
-#include "nn/device.h"
+#include "nn/threads.h"
 #include "tests/generator/tokenizer_test_tools.h"
 
 namespace remomask {

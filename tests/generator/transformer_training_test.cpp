@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "nn/device.h"
+#include "nn/threads.h"
 
 namespace remomask {
 namespace {

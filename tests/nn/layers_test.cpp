@@ -79,7 +79,9 @@ TEST(EncoderBlockTest, GradientsMatchFiniteDifferences) {
   block->to(torch::kDouble);
   auto x = torch::randn({1, 3, 8}, torch::kDouble).requires_grad_(true);
   const auto weight = torch::randn({1, 3, 8}, torch::kDouble);
-  const auto value = [&](const torch::Tensor& input) { return (block(input, torch::Tensor()) * weight).sum(); };
+  const auto value = [&](const torch::Tensor& input) {
+    return (block(input, torch::Tensor()) * weight).sum();
+  };
   value(x).backward();
   for (const auto& [i, j] : {std::pair{0, 0}, {1, 3}, {2, 7}}) {
     torch::NoGradGuard no_grad;

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "nn/device.h"
+#include "nn/threads.h"
 
 namespace remomask {
 namespace {
@@ -95,11 +95,7 @@ TEST_F(ModelFileTest, EveryTensorMustFit) {
   EXPECT_THROW(load_module_tensors(*linear, other, "test"), Error);
 }
 
-TEST(DeviceTest, UnknownDevicesAreRefused) {
-  EXPECT_TRUE(select_device("cpu").is_cpu());
-  EXPECT_THROW(select_device("quantum"), Error);
-  EXPECT_THROW(set_compute_threads(-1), Error);
-}
+TEST(ThreadsTest, NegativeNumbersAreRefused) { EXPECT_THROW(set_compute_threads(-1), Error); }
 
 }  // namespace
 }  // namespace remomask
