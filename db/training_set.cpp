@@ -61,6 +61,7 @@ TrainingClip mirror_twin(const TrainingClip& original, const std::string& name) 
   for (std::string& caption : twin.captions) caption = mirror_caption(caption);
   // "walk-turn-left" becomes "walk-turn-right".
   twin.content = mirror_caption(original.content);
+  twin.meaning = mirror_caption(original.meaning);
   return twin;
 }
 
@@ -119,6 +120,9 @@ std::vector<TrainingClip> load_training_set(const Database& database,
     training.group = group;
     training.captions = clip.captions;
     training.content = clip_content(clip);
+    if (!label_text(clip.labels, "content").empty()) {
+      training.meaning = training.content + '/' + label_text(clip.labels, "style");
+    }
     training.unseen = label_text(clip.labels, "unseen");
     const std::string twin_name = mirror_name(clip);
     item.with_twin = options.add_mirrored && !names.contains(twin_name);

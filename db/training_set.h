@@ -19,7 +19,10 @@ struct TrainingClip {
   Features features;  ///< as many rows as the clip has frames (at most 200)
   std::vector<std::string> captions;  ///< mirrored for a twin
   std::string content;                ///< label "content" or first action; "" when unknown
-  std::string unseen;                 ///< "take", "pair" or "" (test clips of the data pack)
+  /// What the clip shows and how, labels "content" and "style"; "" when it has no
+  /// label "content". Clips of one meaning are repetitions of one performance.
+  std::string meaning;
+  std::string unseen;  ///< "take", "pair" or "" (test clips of the data pack)
 };
 
 struct TrainingSetOptions {

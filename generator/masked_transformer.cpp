@@ -1,6 +1,5 @@
 #include "generator/masked_transformer.h"
 
-#include <torch/nn/functional/loss.h>
 #include <torch/types.h>
 
 #include <cmath>
@@ -49,22 +48,6 @@ at::Tensor MaskedTransformerImpl::forward(const at::Tensor& tokens,
   return torch::baddbmm(head_bias_, by_row, head_weight_)
       .transpose(0, 1)
       .reshape({batch, frames * rows, config_.codes});
-}
-
-TokenLoss token_loss(const at::Tensor& logits, const at::Tensor& targets) {
-  const auto flat = targets.reshape({-1});
-  const auto chosen = torch::nonzero(flat >= 0).squeeze(1);
-  TokenLoss result;
-  result.targets = chosen.size(0);
-  const auto rows = logits.reshape({flat.size(0), logits.size(2)}).index_select(0, chosen);
-  const auto wanted = flat.index_select(0, chosen);
-  if (result.targets == 0) {
-    result.loss = logits.sum() * 0;
-    return result;
-  }
-  result.loss = torch::nn::functional::cross_entropy(rows, wanted);
-  result.accuracy = rows.detach().argmax(1).eq(wanted).to(torch::kDouble).mean().item<double>();
-  return result;
 }
 
 ModelStage masked_stage(const MaskedTransformer& model) {

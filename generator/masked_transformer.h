@@ -54,15 +54,6 @@ class MaskedTransformerImpl : public torch::nn::Module {
 };
 TORCH_MODULE(MaskedTransformer);
 
-/// Mean cross-entropy and accuracy over the entries of `targets` [B, T, rows]
-/// that are not negative; logits [B, T * rows, codes].
-struct TokenLoss {
-  at::Tensor loss;      ///< scalar
-  double accuracy = 0;  ///< share of targets whose code has the largest logit
-  int64_t targets = 0;  ///< how many
-};
-TokenLoss token_loss(const at::Tensor& logits, const at::Tensor& targets);
-
 /// Model <-> stage of a model file (kind "masked").
 ModelStage masked_stage(const MaskedTransformer& model);
 /// Throws Error for another kind or tensors that do not fit. In eval mode.

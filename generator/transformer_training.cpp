@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "generator/masking.h"
+#include "generator/token_loss.h"
 
 namespace remomask {
 
@@ -108,16 +109,6 @@ TransformerBatch masked_batch(const GeneratorData& data, const std::vector<size_
   return batch;
 }
 
-/// Every frame of every sample asks for the tokens of the sample's level.
-at::Tensor level_targets(const at::Tensor& tokens, const at::Tensor& level,
-                         const at::Tensor& frame_mask) {
-  const auto index =
-      level.reshape({-1, 1, 1, 1}).expand({tokens.size(0), tokens.size(1), tokens.size(2), 1});
-  const auto targets = tokens.gather(3, index).squeeze(3);
-  return frame_mask.defined() ? targets.masked_fill(frame_mask.logical_not().unsqueeze(2), -1)
-                              : targets;
-}
-
 TransformerBatch residual_batch(const GeneratorData& data, const std::vector<size_t>& members,
                                 const ResidualConfig& config,
                                 const TransformerTrainingOptions& options, int64_t step) {
@@ -140,7 +131,7 @@ TransformerBatch residual_batch(const GeneratorData& data, const std::vector<siz
   TransformerBatch batch;
   batch.level = torch::tensor(levels, torch::kLong);
   batch.frame_mask = padded.frame_mask;
-  batch.targets = level_targets(padded.tokens, batch.level, padded.frame_mask);
+  batch.targets = residual_targets(padded.tokens, batch.level, padded.frame_mask);
   batch.tokens = padded.tokens.contiguous();
   if (options.history_corruption > 0) {
     const int64_t entries = batch.tokens.numel() / static_cast<int64_t>(members.size());
@@ -243,7 +234,7 @@ std::map<std::string, double> validate_residual(ResidualTransformer& model,
     const Condition condition = make_condition(data, samples, 0);
     mean.add(token_loss(
         model->forward(padded.tokens, level, model->prepare(condition), padded.frame_mask),
-        level_targets(padded.tokens, level, padded.frame_mask)));
+        residual_targets(padded.tokens, level, padded.frame_mask)));
   }
   return {{"val_loss", mean.mean_loss()}, {"val_accuracy", mean.mean_accuracy()}};
 }
@@ -265,34 +256,54 @@ void check_training_data(const GeneratorData& data) {
   if (data.train.clips.empty()) throw Error("training a transformer: there are no training clips");
 }
 
+/// What the data decide about a model.
+template <typename Config>
+void fit_config(Config& config, const GeneratorData& data) {
+  config.rows = data.rows;
+  config.codes = data.codes;
+  config.text_width = data.captions.states.size(1);
+  config.embedding_width = data.motion.size(1);
+}
+
+/// Trains `model` in place; make_batch(members, step), logits_of(batch) and
+/// validate() are what tells the two transformers apart. Returns the history.
+template <typename Model, typename MakeBatch, typename Logits, typename Validate>
+nlohmann::json run_training(Model& model, const GeneratorData& data,
+                            const TransformerTrainingOptions& options, const Monitor& monitor,
+                            MakeBatch make_batch, Logits logits_of, Validate validate) {
+  Trainer trainer(*model, options.trainer, run_identity(model->config(), data, options));
+  BatchSchedule schedule(data.train.clips, options.batch, options.trainer.seed);
+  if (!data.val.clips.empty()) {
+    trainer.set_validation(options.validate_every, [&](int64_t) { return validate(); });
+  }
+  trainer.run(
+      [&](int64_t step) {
+        const TransformerBatch batch = make_batch(schedule.at_step(step), step);
+        return step_result(token_loss(logits_of(batch), batch.targets));
+      },
+      monitor);
+  return trainer.history();
+}
+
 }  // namespace
 
 ModelStage train_masked(MaskedConfig config, const GeneratorData& data,
                         const TransformerTrainingOptions& options, const Monitor& monitor) {
   check_training_data(data);
-  config.rows = data.rows;
-  config.codes = data.codes;
-  config.text_width = data.captions.states.size(1);
-  config.embedding_width = data.motion.size(1);
+  fit_config(config, data);
   torch::manual_seed(mix_seed(options.trainer.seed, 0x6d61736bu));
   MaskedTransformer model(config);
-  Trainer trainer(*model, options.trainer, run_identity(config, data, options));
-  BatchSchedule schedule(data.train.clips, options.batch, options.trainer.seed);
-  if (!data.val.clips.empty()) {
-    trainer.set_validation(options.validate_every,
-                           [&](int64_t) { return validate_masked(model, data, options); });
-  }
-  trainer.run(
-      [&](int64_t step) {
-        const TransformerBatch batch =
-            masked_batch(data, schedule.at_step(step), config, options, step);
-        return step_result(token_loss(
-            model->forward(batch.tokens, model->prepare(batch.condition), batch.frame_mask),
-            batch.targets));
+  const nlohmann::json history = run_training(
+      model, data, options, monitor,
+      [&](const std::vector<size_t>& members, int64_t step) {
+        return masked_batch(data, members, config, options, step);
       },
-      monitor);
+      [&](const TransformerBatch& batch) {
+        return model->forward(batch.tokens, model->prepare(batch.condition), batch.frame_mask);
+      },
+      [&] { return validate_masked(model, data, options); });
   ModelStage stage = masked_stage(model);
-  stage.config["history"] = trainer.history();
+  stage.config["history"] = history;
   return stage;
 }
 
@@ -304,31 +315,22 @@ ModelStage train_residual(ResidualConfig config, const GeneratorData& data,
         "training the residual transformer: the tokenizer has one level only; it is of "
         "no use there");
   }
-  config.rows = data.rows;
+  fit_config(config, data);
   config.levels = data.levels;
-  config.codes = data.codes;
-  config.text_width = data.captions.states.size(1);
-  config.embedding_width = data.motion.size(1);
   torch::manual_seed(mix_seed(options.trainer.seed, 0x72657369u));
   ResidualTransformer model(config);
-  Trainer trainer(*model, options.trainer, run_identity(config, data, options));
-  BatchSchedule schedule(data.train.clips, options.batch, options.trainer.seed);
-  if (!data.val.clips.empty()) {
-    trainer.set_validation(options.validate_every,
-                           [&](int64_t) { return validate_residual(model, data, options); });
-  }
-  trainer.run(
-      [&](int64_t step) {
-        const TransformerBatch batch =
-            residual_batch(data, schedule.at_step(step), config, options, step);
-        return step_result(
-            token_loss(model->forward(batch.tokens, batch.level, model->prepare(batch.condition),
-                                      batch.frame_mask),
-                       batch.targets));
+  const nlohmann::json history = run_training(
+      model, data, options, monitor,
+      [&](const std::vector<size_t>& members, int64_t step) {
+        return residual_batch(data, members, config, options, step);
       },
-      monitor);
+      [&](const TransformerBatch& batch) {
+        return model->forward(batch.tokens, batch.level, model->prepare(batch.condition),
+                              batch.frame_mask);
+      },
+      [&] { return validate_residual(model, data, options); });
   ModelStage stage = residual_stage(model);
-  stage.config["history"] = trainer.history();
+  stage.config["history"] = history;
   return stage;
 }
 

@@ -9,7 +9,8 @@ namespace remomask {
 at::Tensor same_pairs(const PairIdentity& queries, const PairIdentity& keys) {
   return queries.group.unsqueeze(1)
       .eq(keys.group.unsqueeze(0))
-      .logical_or(queries.caption.unsqueeze(1).eq(keys.caption.unsqueeze(0)));
+      .logical_or(queries.caption.unsqueeze(1).eq(keys.caption.unsqueeze(0)))
+      .logical_or(queries.meaning.unsqueeze(1).eq(keys.meaning.unsqueeze(0)));
 }
 
 at::Tensor contrast_loss(const at::Tensor& queries, const at::Tensor& keys, const at::Tensor& queue,

@@ -5,10 +5,13 @@
 namespace remomask {
 
 /// What makes two pairs the same thing: a pair is no negative for another one
-/// of the same group (clip, windows, mirror twin) or the same caption.
+/// of the same group (clip, windows, mirror twin), the same caption or the same
+/// meaning.
 struct PairIdentity {
   at::Tensor group;    ///< [N] int64
   at::Tensor caption;  ///< [N] int64, hash of the normalised caption
+  at::Tensor meaning;  ///< [N] int64, hash of what the labels say; unlike for unlike groups
+                       ///< where labels are missing or not to be used
 };
 
 /// [N, M] bool, true where pair m must not count as a negative for pair n.

@@ -28,6 +28,7 @@ KeyQueue::KeyQueue(int64_t size, int64_t width)
       keys_(register_buffer("keys", torch::zeros({size, width}))),
       group_(register_buffer("group", torch::zeros({size}, torch::kLong))),
       caption_(register_buffer("caption", torch::zeros({size}, torch::kLong))),
+      meaning_(register_buffer("meaning", torch::zeros({size}, torch::kLong))),
       pushed_(register_buffer("pushed", torch::zeros({1}, torch::kLong))) {}
 
 void KeyQueue::push(const at::Tensor& keys, const PairIdentity& identity) {
@@ -39,6 +40,7 @@ void KeyQueue::push(const at::Tensor& keys, const PairIdentity& identity) {
   keys_.index_copy_(0, place, keys.slice(0, skipped));
   group_.index_copy_(0, place, identity.group.slice(0, skipped));
   caption_.index_copy_(0, place, identity.caption.slice(0, skipped));
+  meaning_.index_copy_(0, place, identity.meaning.slice(0, skipped));
   pushed_.add_(count);
 }
 
@@ -47,7 +49,8 @@ int64_t KeyQueue::filled() const { return std::min(size_, pushed_.item<int64_t>(
 at::Tensor KeyQueue::keys() const { return keys_.slice(0, 0, filled()); }
 
 PairIdentity KeyQueue::identity() const {
-  return {group_.slice(0, 0, filled()), caption_.slice(0, 0, filled())};
+  return {group_.slice(0, 0, filled()), caption_.slice(0, 0, filled()),
+          meaning_.slice(0, 0, filled())};
 }
 
 void update_twin(torch::nn::Module& twin, torch::nn::Module& online, double momentum) {

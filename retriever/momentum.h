@@ -24,7 +24,7 @@ class KeyQueue final : public torch::nn::Module {
 
  private:
   int64_t size_;
-  at::Tensor keys_, group_, caption_, pushed_;
+  at::Tensor keys_, group_, caption_, meaning_, pushed_;
 };
 
 /// twin <- momentum x twin + (1 - momentum) x online, for every parameter;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "base/error.h"
@@ -41,21 +42,72 @@ at::Tensor correct_pairs(const std::vector<std::string>& captions,
   return correct;
 }
 
-RecallFigures figures_of(const std::vector<double>& ranks, const std::vector<bool>& chosen,
-                         int64_t gallery) {
-  std::vector<double> selected;
-  for (size_t i = 0; i < ranks.size(); ++i) {
-    if (chosen[i]) selected.push_back(ranks[i]);
+/// Queries of one direction.
+struct RankedQueries {
+  std::vector<LabelledQuery> queries;
+  std::vector<double> ranks;
+  int64_t gallery = 0;
+};
+
+/// Clips of one meaning get the number of the first of them; those without labels
+/// their own.
+at::Tensor meaning_numbers(const std::vector<size_t>& chosen,
+                           const std::vector<TrainingClip>& clips) {
+  std::map<std::string, int64_t> first_clip;
+  for (size_t clip = clips.size(); clip-- > 0;) {
+    first_clip[clips[clip].meaning] = static_cast<int64_t>(clip);
   }
-  return recall_figures(selected, gallery);
+  std::vector<int64_t> result;
+  for (const size_t clip : chosen) {
+    const std::string& meaning = clips[clip].meaning;
+    result.push_back(meaning.empty() ? static_cast<int64_t>(clip) : first_clip[meaning]);
+  }
+  return torch::tensor(result, torch::kLong);
 }
 
-nlohmann::json figures_json(const RecallFigures& figures) {
+RankedQueries ranked_queries(const at::Tensor& similarity, const at::Tensor& correct,
+                             const std::vector<size_t>& query_clip,
+                             const std::vector<size_t>& gallery_clip,
+                             const std::vector<TrainingClip>& clips) {
+  RankedQueries result{{}, best_ranks(similarity, correct), similarity.size(1)};
+  const at::Tensor first = similarity.argmax(1);
+  const at::Tensor same = meaning_numbers(query_clip, clips)
+                              .unsqueeze(1)
+                              .eq(meaning_numbers(gallery_clip, clips).unsqueeze(0));
+  const at::Tensor entries = same.sum(1), right = same.logical_and(correct).sum(1);
+  for (size_t i = 0; i < query_clip.size(); ++i) {
+    result.queries.push_back({query_clip[i],
+                              gallery_clip[static_cast<size_t>(first.data_ptr<int64_t>()[i])],
+                              entries.data_ptr<int64_t>()[i], right.data_ptr<int64_t>()[i]});
+  }
+  return result;
+}
+
+/// The queries whose clip carries `subset` as its label "unseen"; "all": every one.
+RankedQueries queries_of(const RankedQueries& all, const std::string& subset,
+                         const std::vector<TrainingClip>& clips) {
+  RankedQueries chosen;
+  chosen.gallery = all.gallery;
+  for (size_t i = 0; i < all.queries.size(); ++i) {
+    if (subset != "all" && clips[all.queries[i].clip].unseen != subset) continue;
+    chosen.queries.push_back(all.queries[i]);
+    chosen.ranks.push_back(all.ranks[i]);
+  }
+  return chosen;
+}
+
+nlohmann::json figures_json(const RecallFigures& figures, const LabelFigures& labels) {
   nlohmann::json json = {{"median_rank", figures.median_rank},
                          {"queries", figures.queries},
                          {"gallery", figures.gallery}};
   for (size_t i = 0; i < kRecallRanks.size(); ++i) {
     json["R@" + std::to_string(kRecallRanks[i])] = figures.recall[i];
+  }
+  json["first_hit"] = {{"queries", labels.queries},
+                       {"same_content", labels.content},
+                       {"same_content_and_style", labels.meaning}};
+  for (size_t i = 0; i < kRecallRanks.size(); ++i) {
+    json["by_labels_alone"]["R@" + std::to_string(kRecallRanks[i])] = labels.perfect_recall[i];
   }
   return json;
 }
@@ -92,6 +144,36 @@ RecallFigures recall_figures(const std::vector<double>& ranks, int64_t gallery) 
   return figures;
 }
 
+double chance_within(int64_t k, int64_t correct, int64_t entries) {
+  double none = 1;
+  for (int64_t i = 0; i < k && i < entries; ++i) {
+    none *= std::max(0.0, static_cast<double>(entries - correct - i)) /
+            static_cast<double>(entries - i);
+  }
+  return 1 - none;
+}
+
+LabelFigures label_figures(const std::vector<LabelledQuery>& queries,
+                           const std::vector<TrainingClip>& clips) {
+  LabelFigures figures;
+  for (const LabelledQuery& query : queries) {
+    const TrainingClip &wanted = clips[query.clip], &found = clips[query.first];
+    if (wanted.meaning.empty()) continue;
+    ++figures.queries;
+    if (found.content == wanted.content) ++figures.content;
+    if (found.meaning == wanted.meaning) ++figures.meaning;
+    for (size_t i = 0; i < kRecallRanks.size(); ++i) {
+      figures.perfect_recall[i] +=
+          chance_within(kRecallRanks[i], query.correct_of_them, query.same_meaning);
+    }
+  }
+  const double to_percent = 100.0 / static_cast<double>(std::max<int64_t>(1, figures.queries));
+  figures.content *= to_percent;
+  figures.meaning *= to_percent;
+  for (double& recall : figures.perfect_recall) recall *= to_percent;
+  return figures;
+}
+
 std::string retrieval_protocol(bool all_captions) {
   return std::string("full gallery of the split, cosine; ") +
          (all_captions ? "all captions" : "first caption") +
@@ -102,8 +184,9 @@ std::string retrieval_protocol(bool all_captions) {
 void to_json(nlohmann::json& json, const RetrievalEvaluation& evaluation) {
   json = {{"protocol", evaluation.protocol}};
   for (const RetrievalSubset& subset : evaluation.subsets) {
-    json[subset.name] = {{"text_to_motion", figures_json(subset.text_to_motion)},
-                         {"motion_to_text", figures_json(subset.motion_to_text)}};
+    json[subset.name] = {
+        {"text_to_motion", figures_json(subset.text_to_motion, subset.text_to_motion_labels)},
+        {"motion_to_text", figures_json(subset.motion_to_text, subset.motion_to_text_labels)}};
   }
 }
 
@@ -113,23 +196,24 @@ RetrievalEvaluation evaluate_vectors(const at::Tensor& text, const at::Tensor& m
                                      const std::vector<TrainingClip>& clips, bool all_captions) {
   const at::Tensor similarity = torch::matmul(text, motion.t());
   const at::Tensor correct = correct_pairs(captions, caption_clip, clips);
-  const std::vector<double> text_ranks = best_ranks(similarity, correct);
+  std::vector<size_t> every_clip(clips.size());
+  std::iota(every_clip.begin(), every_clip.end(), 0);
+  const RankedQueries texts = ranked_queries(similarity, correct, caption_clip, every_clip, clips);
   // Motions without a correct caption can be no queries.
-  const at::Tensor asked = correct.any(0);
-  const at::Tensor places = asked.nonzero().flatten();
-  const std::vector<double> motion_ranks =
-      best_ranks(similarity.t().index_select(0, places), correct.t().index_select(0, places));
+  const at::Tensor places = correct.any(0).nonzero().flatten();
+  const RankedQueries motions =
+      ranked_queries(similarity.t().index_select(0, places), correct.t().index_select(0, places),
+                     {places.data_ptr<int64_t>(), places.data_ptr<int64_t>() + places.numel()},
+                     caption_clip, clips);
   RetrievalEvaluation evaluation{retrieval_protocol(all_captions), {}};
   for (const std::string name : {"all", "take", "pair"}) {
-    const auto belongs = [&](size_t clip) { return name == "all" || clips[clip].unseen == name; };
-    std::vector<bool> texts, motions;
-    for (const size_t clip : caption_clip) texts.push_back(belongs(clip));
-    for (int64_t i = 0; i < places.size(0); ++i) {
-      motions.push_back(belongs(static_cast<size_t>(places[i].item<int64_t>())));
-    }
-    RetrievalSubset subset{name, figures_of(text_ranks, texts, motion.size(0)),
-                           figures_of(motion_ranks, motions, text.size(0))};
-    if (subset.text_to_motion.queries > 0) evaluation.subsets.push_back(std::move(subset));
+    const RankedQueries by_text = queries_of(texts, name, clips);
+    const RankedQueries by_motion = queries_of(motions, name, clips);
+    if (by_text.queries.empty()) continue;
+    evaluation.subsets.push_back({name, recall_figures(by_text.ranks, by_text.gallery),
+                                  recall_figures(by_motion.ranks, by_motion.gallery),
+                                  label_figures(by_text.queries, clips),
+                                  label_figures(by_motion.queries, clips)});
   }
   return evaluation;
 }

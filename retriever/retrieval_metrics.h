@@ -22,6 +22,31 @@ struct RecallFigures {
   int64_t gallery = 0;
 };
 
+/// What the labels of the first hit say, in percent of the queries whose clip
+/// has labels; ties go to the lower number.
+struct LabelFigures {
+  double content = 0;  ///< the asked content (TrainingClip::content)
+  double meaning = 0;  ///< the asked content in the asked style (TrainingClip::meaning)
+  int64_t queries = 0;
+  /// Recall of a search that knows content and style of everything, and puts
+  /// the repetitions of the asked ones first in random order: what captions that
+  /// say no more than that allow.
+  std::array<double, 5> perfect_recall{};
+};
+
+/// A query: its own clip, the clip found first, how many entries of the gallery
+/// have its meaning and how many of them are correct.
+struct LabelledQuery {
+  size_t clip = 0, first = 0;
+  int64_t same_meaning = 0, correct_of_them = 0;
+};
+LabelFigures label_figures(const std::vector<LabelledQuery>& queries,
+                           const std::vector<TrainingClip>& clips);
+
+/// Probability that at least one of `correct` entries is among the first k of
+/// `entries` in random order; 0 < correct <= entries.
+double chance_within(int64_t k, int64_t correct, int64_t entries);
+
 /// Rank of the best correct entry of each row, counted from 1; entries equal to
 /// it that are wrong count half (ties averaged). similarity [Q, N] float,
 /// correct [Q, N] bool with at least one true a row; values must be finite.
@@ -36,6 +61,7 @@ std::string retrieval_protocol(bool all_captions);
 struct RetrievalSubset {
   std::string name;  ///< "all", "take" or "pair"
   RecallFigures text_to_motion, motion_to_text;
+  LabelFigures text_to_motion_labels, motion_to_text_labels;
 };
 
 struct RetrievalEvaluation {

@@ -22,9 +22,14 @@ constexpr uint64_t kEpochStream = 0x65706f6368, kCropStream = 0x63726f70;
 /// Batches that are sorted by length together.
 constexpr size_t kBatchesByLength = 8;
 
-int64_t caption_identity(const std::string& caption) {
-  return static_cast<int64_t>(
-      std::stoull(content_hash(normalise_caption(caption)).substr(0, 16), nullptr, 16));
+int64_t text_identity(const std::string& text) {
+  return static_cast<int64_t>(std::stoull(content_hash(text).substr(0, 16), nullptr, 16));
+}
+
+/// Of what the labels say, or of the group where they are silent or not used.
+int64_t meaning_identity(const TrainingClip& clip, bool use_labels) {
+  return use_labels && !clip.meaning.empty() ? text_identity("meaning " + clip.meaning)
+                                             : text_identity("group " + std::to_string(clip.group));
 }
 
 /// What tells one training set from another, for the checkpoint.
@@ -33,7 +38,7 @@ std::string set_identity(const std::vector<TrainingClip>& clips) {
   for (const TrainingClip& clip : clips) {
     text += clip.name + '\t' + std::to_string(clip.features.frames) + '\t';
     for (const std::string& caption : clip.captions) text += caption + '\t';
-    text += '\n';
+    text += clip.meaning + '\n';
   }
   return content_hash(text);
 }
@@ -70,7 +75,7 @@ class BatchSource {
     const std::vector<size_t>& chosen = members(static_cast<uint64_t>(step));
     std::vector<std::string> captions;
     std::vector<MotionCrop> online, whole;
-    std::vector<int64_t> groups, texts;
+    std::vector<int64_t> groups, texts, meanings;
     CounterRandom random(options_.trainer.seed, mix_seed(kCropStream, static_cast<uint64_t>(step)));
     for (const size_t index : chosen) {
       const TrainingClip& clip = clips_[index];
@@ -79,13 +84,15 @@ class BatchSource {
                                    config_.patch, random));
       whole.push_back({&clip.features, online.back().first, online.back().frames, {}});
       groups.push_back(clip.group);
-      texts.push_back(caption_identity(captions.back()));
+      texts.push_back(text_identity(normalise_caption(captions.back())));
+      meanings.push_back(meaning_identity(clip, options_.mask_same_meaning));
     }
     MotionEncoder& encoder = model.motion_encoder();
     return {model.text_tower().tokenize(captions),
             encoder.patches(online),
             encoder.patches(whole),
-            {torch::tensor(groups, torch::kLong), torch::tensor(texts, torch::kLong)}};
+            {torch::tensor(groups, torch::kLong), torch::tensor(texts, torch::kLong),
+             torch::tensor(meanings, torch::kLong)}};
   }
 
  private:
@@ -209,6 +216,7 @@ ModelStage train_retriever(const std::vector<TrainingClip>& train,
                                    {"least_crop", options.least_crop},
                                    {"patch_keep", options.patch_keep},
                                    {"word_drop", options.word_drop},
+                                   {"mask_same_meaning", options.mask_same_meaning},
                                    {"text", text_stage ? stage_hash(*text_stage) : ""}};
   Trainer trainer(model, options.trainer, identity);
   if (!val_clips.empty()) {

@@ -40,6 +40,15 @@ void print_recall(const std::string& name, const char* direction, const RecallFi
       figures.recall[4], figures.median_rank, figures.queries, figures.gallery);
 }
 
+void print_labels(const std::string& name, const char* direction, const LabelFigures& figures) {
+  if (figures.queries == 0) return;
+  fmt::print(
+      "{:<6} {:<15} first hit: same content {:5.1f}  same content and style {:5.1f}  by labels "
+      "alone R@1 {:5.1f}  R@3 {:5.1f}  R@10 {:5.1f}  ({} queries with labels)\n",
+      name, direction, figures.content, figures.meaning, figures.perfect_recall[0],
+      figures.perfect_recall[2], figures.perfect_recall[4], figures.queries);
+}
+
 void register_evaluate_retrieval(CLI::App& parent, Program& program) {
   struct Options {
     FileOptions files;
@@ -74,6 +83,10 @@ void register_evaluate_retrieval(CLI::App& parent, Program& program) {
     for (const RetrievalSubset& subset : result.subsets) {
       print_recall(subset.name, "text-to-motion", subset.text_to_motion);
       print_recall(subset.name, "motion-to-text", subset.motion_to_text);
+    }
+    for (const RetrievalSubset& subset : result.subsets) {
+      print_labels(subset.name, "text-to-motion", subset.text_to_motion_labels);
+      print_labels(subset.name, "motion-to-text", subset.motion_to_text_labels);
     }
   });
 }

@@ -2,13 +2,15 @@
 # What the momentum queues bring: trains the tiny retriever without queues, with
 # the motion queue alone and with both, three seeds each at equal budget, and
 # prints a Markdown table of the test split. Stopped runs go on where they were.
-#   tools/queue_ablation.sh motions.sqlite FOLDER
+# More arguments go to the training, for example --mask-same-labels.
+#   tools/queue_ablation.sh motions.sqlite FOLDER [OPTION...]
 set -eu
-[ $# -eq 2 ] || { echo "usage: $0 DATABASE FOLDER" >&2; exit 2; }
+[ $# -ge 2 ] || { echo "usage: $0 DATABASE FOLDER [OPTION...]" >&2; exit 2; }
 database=$1
 folder=$2
+shift 2
 remomask=${REMOMASK:-$(dirname "$0")/../build/release/tools/remomask}
-settings="--preset tiny --steps 400 --batch 64 --rate 0.002 --queue-size 2048"
+settings="--preset tiny --steps 400 --batch 64 --rate 0.002 --queue-size 2048 $*"
 mkdir -p "$folder"
 for seed in 1 2 3; do
   for queues in none motion both; do
@@ -27,25 +29,23 @@ done
 echo "\`remomask train retriever $settings\`, seeds 1 to 3, mean (least to most), percent;"
 sed -n 1p "$folder/none-1/test.txt"
 echo
-echo "| queues | queries | direction | R@1 | R@3 | R@10 |"
-echo "|---|---|---|---|---|---|"
+echo "| queues | queries | direction | R@1 | R@3 | R@10 | first hit: content | content and style |"
+echo "|---|---|---|---|---|---|---|---|"
 for subset in take pair all; do
   for direction in text-to-motion motion-to-text; do
     for queues in none motion both; do
       cat "$folder/$queues"-[123]/test.txt | awk -v subset=$subset -v direction=$direction \
         -v queues=$queues '
-        $1 == subset && $2 == direction {
-          split("4 8 12", column, " ")
-          for (i = 1; i <= 3; ++i) {
-            value = $column[i]; sum[i] += value
-            if (!count || value < least[i]) least[i] = value
-            if (!count || value > most[i]) most[i] = value
-          }
-          ++count
+        function note(i, value) {
+          sum[i] += value; ++count[i]
+          if (count[i] == 1 || value < least[i]) least[i] = value
+          if (count[i] == 1 || value > most[i]) most[i] = value
         }
+        $1 == subset && $2 == direction && $3 == "R@1" { note(1, $4); note(2, $8); note(3, $12) }
+        $1 == subset && $2 == direction && $3 == "first" { note(4, $7); note(5, $12) }
         END {
           printf "| %s | %s | %s |", queues, subset, direction
-          for (i = 1; i <= 3; ++i) printf " %.1f (%.1f-%.1f) |", sum[i] / count, least[i], most[i]
+          for (i = 1; i <= 5; ++i) printf " %.1f (%.1f-%.1f) |", sum[i] / count[i], least[i], most[i]
           printf "\n"
         }'
     done

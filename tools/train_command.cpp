@@ -23,6 +23,7 @@ struct TrainOptions {
   std::optional<int64_t> steps, batch, queue_size;
   std::optional<double> learning_rate;
   uint64_t seed = 1;
+  bool mask_same_labels = false;
 };
 
 /// Captions of JSON Lines files ({"captions": [...], "split": ...}); those of a
@@ -137,6 +138,7 @@ class TrainingRun {
     if (options_.batch) options.batch = *options_.batch;
     options.queues = parse_queues(options_.queues);
     if (options_.queue_size) options.queue_size = *options_.queue_size;
+    options.mask_same_meaning = options_.mask_same_labels;
     return train_retriever(clips("train"), clips("val"), text, preset_.retriever, options,
                            monitor_);
   }
@@ -217,6 +219,8 @@ void register_train(CLI::App& app, Program& program) {
                    "entries of each queue; default: of the "
                    "preset")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--mask-same-labels", options->mask_same_labels,
+                    "retriever: clips with the same labels content and style are no negatives");
   command->callback([options, &program] { TrainingRun(*options, program).run(); });
 }
 

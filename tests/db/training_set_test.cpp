@@ -16,7 +16,7 @@ TEST(TrainingSet, TwinsFollowTheirOriginals) {
   TestFolder folder;
   Database database(folder / "d", OpenMode::create);
   Clip clip = named_clip("a");
-  clip.labels = {{"content", "walk-turn-left"}, {"unseen", "pair"}};
+  clip.labels = {{"content", "walk-turn-left"}, {"style", "proud"}, {"unseen", "pair"}};
   const Motion motion = walking_motion(60, 1);
   const int64_t id = database.add_clip(clip, motion);
   database.add_clip(named_clip("b"), walking_motion(40, 2));
@@ -32,6 +32,9 @@ TEST(TrainingSet, TwinsFollowTheirOriginals) {
   EXPECT_EQ(set[1].captions[1], "someone is walking right.");
   EXPECT_EQ(set[0].content, "walk-turn-left");
   EXPECT_EQ(set[1].content, "walk-turn-right");
+  EXPECT_EQ(set[0].meaning, "walk-turn-left/proud");
+  EXPECT_EQ(set[1].meaning, "walk-turn-right/proud");
+  EXPECT_EQ(set[2].meaning, "walk/");  // named_clip has the label "content" alone
   EXPECT_EQ(set[0].unseen, "pair");
   EXPECT_EQ(set[2].content, "walk");
   EXPECT_EQ(set[2].unseen, "");

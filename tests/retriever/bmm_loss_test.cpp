@@ -80,12 +80,14 @@ TEST(ContrastLoss, GradientAgreesWithDifferences) {
   check(scale, scale.grad());
 }
 
-TEST(SamePairs, GroupOrCaption) {
-  const PairIdentity queries{torch::tensor({1L, 2L}), torch::tensor({10L, 20L})};
-  const PairIdentity keys{torch::tensor({1L, 3L, 4L}), torch::tensor({30L, 20L, 40L})};
+TEST(SamePairs, GroupOrCaptionOrMeaning) {
+  const PairIdentity queries{torch::tensor({1L, 2L}), torch::tensor({10L, 20L}),
+                             torch::tensor({100L, 200L})};
+  const PairIdentity keys{torch::tensor({1L, 3L, 4L}), torch::tensor({30L, 20L, 40L}),
+                          torch::tensor({300L, 300L, 100L})};
   const auto same = same_pairs(queries, keys);
   EXPECT_TRUE(
-      same.equal(torch::tensor({1, 0, 0, 0, 1, 0}, torch::kInt).view({2, 3}).to(torch::kBool)));
+      same.equal(torch::tensor({1, 0, 1, 0, 1, 0}, torch::kInt).view({2, 3}).to(torch::kBool)));
 }
 
 }  // namespace

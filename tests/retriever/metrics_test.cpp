@@ -36,6 +36,26 @@ TEST(RetrievalMetrics, ConstantSimilarityIsChance) {
   for (const double rank : ranks) EXPECT_DOUBLE_EQ(rank, 3);
 }
 
+TEST(RetrievalMetrics, LabelsOfTheFirstHitByHand) {
+  std::vector<TrainingClip> clips(4);
+  const std::vector<std::string> contents = {"walk", "walk", "run", "jump"};
+  for (size_t i = 0; i < 4; ++i) clips[i].content = contents[i];
+  clips[0].meaning = "walk/proud";
+  clips[1].meaning = "walk/tired";
+  clips[2].meaning = "run/";
+  // Clip 3 has no labels: as a query it does not count, as an answer it is wrong.
+  const LabelFigures figures =
+      label_figures({{0, 1, 1, 1}, {1, 1, 4, 1}, {2, 2, 4, 2}, {2, 3, 12, 1}, {3, 3, 1, 1}}, clips);
+  EXPECT_EQ(figures.queries, 4);
+  EXPECT_DOUBLE_EQ(figures.content, 75);
+  EXPECT_DOUBLE_EQ(figures.meaning, 50);
+  EXPECT_NEAR(figures.perfect_recall[0], 100 * (1 + 1. / 4 + 1. / 2 + 1. / 12) / 4, 1e-9);
+  // Two of four within two of them: 1 - 2/4 x 1/3.
+  EXPECT_NEAR(figures.perfect_recall[1], 100 * (1 + 2. / 4 + 5. / 6 + 2. / 12) / 4, 1e-9);
+  EXPECT_NEAR(figures.perfect_recall[4], 100 * (3 + 10. / 12) / 4, 1e-9);
+  EXPECT_EQ(label_figures({{3, 3, 1, 1}}, clips).queries, 0);
+}
+
 TEST(RetrievalMetrics, SameCaptionAndSameGroupAreCorrectAndSubsetsKeepTheGallery) {
   std::vector<TrainingClip> clips(4);
   const std::vector<std::string> captions = {"A man walks.", "a man walks", "she jumps", "he runs"};

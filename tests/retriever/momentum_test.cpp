@@ -21,12 +21,12 @@ PairBatch batch_of(const std::vector<TrainingClip>& clips, RetrieverModel& model
   return {model.text_tower().tokenize(captions),
           patches,
           patches,
-          {torch::tensor(groups), torch::tensor(groups)}};
+          {torch::tensor(groups), torch::tensor(groups), torch::tensor(groups)}};
 }
 
 PairIdentity numbers(int64_t first, int64_t count) {
   const auto values = torch::arange(first, first + count, torch::kLong);
-  return {values, values + 100};
+  return {values, values + 100, values + 200};
 }
 
 TEST(KeyQueue, WrapsAroundAndCountsOnlyWhatWasPushed) {
@@ -39,6 +39,7 @@ TEST(KeyQueue, WrapsAroundAndCountsOnlyWhatWasPushed) {
   EXPECT_TRUE(queue.keys().equal(torch::tensor({{5.f}, {6.f}, {3.f}, {4.f}})));
   EXPECT_TRUE(queue.identity().group.equal(torch::tensor({5L, 6L, 3L, 4L})));
   EXPECT_TRUE(queue.identity().caption.equal(torch::tensor({105L, 106L, 103L, 104L})));
+  EXPECT_TRUE(queue.identity().meaning.equal(torch::tensor({205L, 206L, 203L, 204L})));
 }
 
 TEST(KeyQueue, MoreKeysThanEntriesKeepTheLast) {

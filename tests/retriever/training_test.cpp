@@ -74,6 +74,29 @@ TEST(RetrieverTraining, ResumedRunEqualsTheUninterrupted) {
   std::filesystem::remove(path);
 }
 
+TEST(RetrieverTraining, ClipsOfOneMeaningAreNoNegativesWhereAskedFor) {
+  auto clips = separable_clips(12, 1, 1);
+  RetrieverTrainingOptions options = quick_options(3);
+  options.trainer.weight_decay = 0;
+  const auto trained = [&](bool mask, double rate) {
+    options.mask_same_meaning = mask;
+    options.trainer.learning_rate = rate;
+    return train_retriever(clips, {}, {}, retriever_preset("tiny"), options, {}).tensors;
+  };
+  const auto equal = [](const auto& a, const auto& b) {
+    return std::all_of(a.begin(), a.end(),
+                       [&](const auto& item) { return item.second.equal(b.at(item.first)); });
+  };
+  // Without labels the choice changes nothing.
+  const auto plain = trained(false, 2e-3);
+  EXPECT_TRUE(equal(plain, trained(true, 2e-3)));
+  for (TrainingClip& clip : clips) clip.meaning = "walk/proud";
+  EXPECT_TRUE(equal(plain, trained(false, 2e-3)));
+  // No negative is left, in the batch or in the queues: the loss is zero and nothing moves.
+  EXPECT_TRUE(equal(trained(true, 2e-3), trained(true, 0)));
+  EXPECT_FALSE(equal(plain, trained(true, 0)));
+}
+
 TEST(RetrieverTraining, LearnsSeparableMotionsAndSurvivesTheFile) {
   const auto train = separable_clips(24, 8, 1), test = separable_clips(24, 2, 99);
   const ModelStage stage =
