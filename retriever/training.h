@@ -23,8 +23,8 @@ struct RetrieverTrainingOptions {
   double patch_keep = 0.5;    ///< share of the patches that the online encoder sees
   double word_drop = 0.1;     ///< share of the words hidden from the online text tower
   /// Clips whose labels say the same content in the same style are no negatives
-  /// of each other. Uses labels that a caption alone does not give away.
-  bool mask_same_meaning = false;
+  /// of each other (neither group nor caption gives such repetitions away).
+  bool mask_same_meaning = true;
   int64_t validation_every = 200;
   /// Defaults of a preset: sizes of queue and run that fit it.
   explicit RetrieverTrainingOptions(const std::string& preset = "base");

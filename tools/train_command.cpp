@@ -23,7 +23,7 @@ struct TrainOptions {
   std::optional<int64_t> steps, batch, queue_size;
   std::optional<double> learning_rate;
   uint64_t seed = 1;
-  bool mask_same_labels = false;
+  bool mask_same_labels = true;
 };
 
 /// Captions of JSON Lines files ({"captions": [...], "split": ...}); those of a
@@ -219,8 +219,8 @@ void register_train(CLI::App& app, Program& program) {
                    "entries of each queue; default: of the "
                    "preset")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--mask-same-labels", options->mask_same_labels,
-                    "retriever: clips with the same labels content and style are no negatives");
+  command->add_flag("!--no-mask-same-labels", options->mask_same_labels,
+                    "retriever: clips with equal labels content and style are negatives too");
   command->callback([options, &program] { TrainingRun(*options, program).run(); });
 }
 
