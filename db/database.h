@@ -27,9 +27,28 @@ struct Clip {
                              ///< file, mirror twins, the trial in another skeleton
   bool mirrored = false;     ///< a stored mirror copy (HumanML3D "M...")
   std::string skeleton = "humanml3d";
-  int frames = 0;  ///< positions, 20 fps
+  int frames = 0;    ///< positions, 20 fps
+  double speed = 0;  ///< mean of the root over the ground, m/s; given by the database
   std::vector<std::string> captions;
   nlohmann::json labels = nlohmann::json::object();
+  std::vector<std::string> tags;  ///< of the user, ascending
+};
+
+/// Captions that one clip can have.
+constexpr int kCaptionsOfClip = 1024;
+
+/// What to change of a clip; what is not given stays.
+struct ClipChanges {
+  std::optional<std::vector<std::string>> captions;
+  std::optional<nlohmann::json> labels;  ///< JSON merge patch (RFC 7396): null removes a label
+  std::optional<std::string> licence, split;
+  std::optional<std::vector<std::string>> tags;
+};
+
+/// A clip whose captions answer a full-text query.
+struct CaptionMatch {
+  int64_t clip_id = 0;
+  double bm25 = 0;  ///< of its best caption, as SQLite's FTS5 counts: lower is better
 };
 
 /// Vectors of one clip made by one retriever.
@@ -47,7 +66,8 @@ enum class OpenMode { read_only, read_write, create };
 class Database {
  public:
   /// Throws Error when the file is missing, locked, not a database, or made by
-  /// a newer program.
+  /// a newer program. A database of an older version is upgraded when it is
+  /// opened for writing, and refused when it is opened for reading.
   Database(const std::string& path, OpenMode mode);
   ~Database();
   Database(Database&&) noexcept;
@@ -70,6 +90,14 @@ class Database {
   /// Removes all clips cut from one file, with their captions, motions and
   /// embeddings, and the note of its import; returns how many.
   int remove_clips(const std::string& source, const std::string& source_file);
+  /// Returns whether that changed anything. Changed captions take the clip's
+  /// embeddings of all retrievers with them. Throws Error for a clip that is not
+  /// there and for values that add_clip() refuses.
+  bool update_clip(int64_t id, const ClipChanges& changes);
+  /// Removes these clips with all that belongs to them. The notes of imports
+  /// stay: an import of the same files does not bring the clips back. Throws
+  /// Error, and removes nothing, when one is not there.
+  void remove(const std::vector<int64_t>& ids);
   std::optional<int64_t> find_name(const std::string& name) const;
   std::optional<int64_t> find_content(const std::string& content_hash) const;
 
@@ -78,6 +106,10 @@ class Database {
   std::vector<Clip> clips() const;
   Clip clip(int64_t id) const;
   Motion motion(int64_t id) const;
+  /// The clips whose captions answer a query in the language of SQLite's FTS5
+  /// (words are compared by their stem, without case and accents), best first,
+  /// then by id; negative `limit`: all. Throws Error for a query that is none.
+  std::vector<CaptionMatch> match_captions(const std::string& fts_query, int limit = -1) const;
 
   /// Notes of one import, so that it can go on and be repeated: the fingerprint
   /// says which content of the file, imported how, is stored.
@@ -91,13 +123,40 @@ class Database {
   /// Replaces all vectors of `retriever_hash`.
   void store_embeddings(const std::string& retriever_hash,
                         const std::vector<ClipEmbedding>& embeddings);
+  /// Stores vectors of some clips; those of others stay.
+  void add_embeddings(const std::string& retriever_hash,
+                      const std::vector<ClipEmbedding>& embeddings);
+  /// By clip id.
   std::vector<ClipEmbedding> embeddings(const std::string& retriever_hash) const;
+  /// Of these clips, in the order of `ids`. Throws Error when one has none.
+  std::vector<ClipEmbedding> embeddings(const std::string& retriever_hash,
+                                        const std::vector<int64_t>& ids) const;
+  /// Ids, ascending, of the clips that this retriever has embedded; reads no vector.
+  std::vector<int64_t> embedded_clips(const std::string& retriever_hash) const;
+  /// Retrievers of which vectors are stored.
+  std::vector<std::string> retrievers() const;
   /// Of one clip; nothing when this retriever has not embedded it.
   std::optional<ClipEmbedding> embedding(const std::string& retriever_hash, int64_t clip_id) const;
 
   /// Free-form facts about the whole database.
   void set_fact(const std::string& key, const std::string& value);
   std::optional<std::string> fact(const std::string& key) const;
+
+ private:
+  friend class ReadSnapshot;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// While it lives, all reads of `database` see one state of it, whatever other
+/// programs write meanwhile; writing through `database` is refused. Inside a
+/// transaction, or another snapshot, it does nothing. `database` must outlive it.
+class ReadSnapshot {
+ public:
+  explicit ReadSnapshot(const Database& database);
+  ~ReadSnapshot();
+  ReadSnapshot(const ReadSnapshot&) = delete;
+  ReadSnapshot& operator=(const ReadSnapshot&) = delete;
 
  private:
   struct Impl;

@@ -3,6 +3,8 @@
 #include <random>
 
 #include "base/error.h"
+#include "db/clip_speed.h"
+#include "db/database.h"
 
 namespace remomask {
 
@@ -10,7 +12,7 @@ namespace {
 
 // AUTOINCREMENT: the id of a removed clip never comes back, an index that still
 // holds it cannot show another motion under it.
-constexpr const char* kSchema = R"sql(
+constexpr const char* kVersion1 = R"sql(
 CREATE TABLE fact (
   key TEXT PRIMARY KEY,
   value TEXT NOT NULL
@@ -67,6 +69,75 @@ CREATE TABLE import_log (
 INSERT INTO fact VALUES ('generation', '0'), ('motion_format', 'float32 [frames][joints][3]');
 )sql";
 
+// A new file takes the same steps as an old one, so that both end alike. The
+// view gives captions the row numbers of the full-text index, kCaptionsOfClip a
+// clip; the index keeps no second copy of the texts.
+constexpr const char* kVersion2 = R"sql(
+ALTER TABLE clip ADD COLUMN speed REAL NOT NULL DEFAULT 0;
+
+CREATE TABLE tag (
+  clip_id INTEGER NOT NULL REFERENCES clip (id) ON DELETE CASCADE,
+  tag TEXT NOT NULL,
+  PRIMARY KEY (clip_id, tag)
+) WITHOUT ROWID;
+
+CREATE INDEX embedding_by_retriever ON embedding (retriever_hash, clip_id);
+
+CREATE VIEW caption_row AS
+  SELECT clip_id * 1024 + position AS id, text FROM caption;
+
+CREATE VIRTUAL TABLE caption_words USING fts5 (
+  text, content = 'caption_row', content_rowid = 'id', tokenize = 'porter unicode61'
+);
+
+CREATE TRIGGER caption_inserted AFTER INSERT ON caption BEGIN
+  INSERT INTO caption_words (rowid, text) VALUES (new.clip_id * 1024 + new.position, new.text);
+END;
+CREATE TRIGGER caption_deleted AFTER DELETE ON caption BEGIN
+  INSERT INTO caption_words (caption_words, rowid, text)
+    VALUES ('delete', old.clip_id * 1024 + old.position, old.text);
+END;
+CREATE TRIGGER caption_updated AFTER UPDATE ON caption BEGIN
+  INSERT INTO caption_words (caption_words, rowid, text)
+    VALUES ('delete', old.clip_id * 1024 + old.position, old.text);
+  INSERT INTO caption_words (rowid, text) VALUES (new.clip_id * 1024 + new.position, new.text);
+END;
+)sql";
+static_assert(kCaptionsOfClip == 1024, "the schema says 1024");
+
+void set_version(const SqliteConnection& connection, int64_t version) {
+  connection.execute(("PRAGMA user_version = " + std::to_string(version)).c_str());
+}
+
+void fill_speeds(const SqliteConnection& connection) {
+  SqliteStatement rows(connection, "SELECT clip_id, frames, joints, positions FROM motion");
+  SqliteStatement update(connection, "UPDATE clip SET speed = ? WHERE id = ?");
+  while (rows.step()) {
+    Motion motion;
+    motion.frames = static_cast<int>(rows.integer(1));
+    motion.joints = static_cast<int>(rows.integer(2));
+    motion.positions = rows.floats(3);
+    if (!is_whole_motion(motion)) {
+      throw Error(connection.path() + ": the motion of clip number " +
+                  std::to_string(rows.integer(0)) +
+                  " is cut off: the database is damaged; restore a backup");
+    }
+    update.bind_real(1, mean_root_speed(motion)).bind(2, rows.integer(0)).run();
+  }
+}
+
+void upgrade_from_1(const SqliteConnection& connection) {
+  const int64_t most = connection.integer("SELECT coalesce(max(position), 0) FROM caption");
+  if (most >= kCaptionsOfClip) {
+    throw Error(connection.path() + ": a clip has more than " + std::to_string(kCaptionsOfClip) +
+                " captions, which format 2 cannot hold; delete some with the version that made it");
+  }
+  connection.execute(kVersion2);
+  connection.execute("INSERT INTO caption_words (caption_words) VALUES ('rebuild')");
+  fill_speeds(connection);
+  set_version(connection, 2);
+}
+
 std::string random_uuid() {
   std::random_device device;
   constexpr char kDigits[] = "0123456789abcdef";
@@ -92,10 +163,11 @@ void create_schema(const SqliteConnection& connection) {
   SqliteScope scope(connection);
   // Another program may have made it between our look and our lock.
   if (!is_empty_database(connection)) return;
-  connection.execute(kSchema);
+  connection.execute(kVersion1);
+  connection.execute(kVersion2);
   SqliteStatement(connection, "INSERT INTO fact VALUES ('uuid', ?)").bind(1, random_uuid()).run();
   connection.execute(("PRAGMA application_id = " + std::to_string(kApplicationId)).c_str());
-  connection.execute(("PRAGMA user_version = " + std::to_string(kSchemaVersion)).c_str());
+  set_version(connection, kSchemaVersion);
   scope.commit();
 }
 
@@ -114,6 +186,27 @@ void check_schema(const SqliteConnection& connection) {
   if (version < 1) {
     throw Error(path + ": has no format version: the database is damaged; restore a backup");
   }
+}
+
+void upgrade_schema(const SqliteConnection& connection) {
+  if (connection.integer("PRAGMA user_version") == kSchemaVersion) return;
+  SqliteScope scope(connection);
+  // Another program may have done it between our look and our lock.
+  if (connection.integer("PRAGMA user_version") == 1) upgrade_from_1(connection);
+  scope.commit();
+}
+
+void renew_identity(const SqliteConnection& connection) {
+  SqliteStatement(connection, "UPDATE fact SET value = ? WHERE key = 'uuid'")
+      .bind(1, random_uuid())
+      .run();
+}
+
+void require_present_schema(const SqliteConnection& connection) {
+  const int64_t version = connection.integer("PRAGMA user_version");
+  if (version == kSchemaVersion) return;
+  throw Error(connection.path() + ": was made by an older version of remomask (format " +
+              std::to_string(version) + "); run: remomask db upgrade " + connection.path());
 }
 
 }  // namespace remomask

@@ -6,13 +6,23 @@ namespace remomask {
 
 /// Marks a SQLite file as a motion database ("RMMK").
 constexpr int64_t kApplicationId = 0x524d4d4b;
-constexpr int64_t kSchemaVersion = 1;
+constexpr int64_t kSchemaVersion = 2;
 
 /// Makes the tables in an empty file.
 void create_schema(const SqliteConnection& connection);
 
-/// Throws Error unless the file is a motion database of this version.
+/// Throws Error unless the file is a motion database of this or an older version.
 void check_schema(const SqliteConnection& connection);
+
+/// Brings an older version to the present one in one transaction; `generation`
+/// stays, as no clip and no vector changes. Needs a connection that may write.
+void upgrade_schema(const SqliteConnection& connection);
+
+/// Throws Error that says how to upgrade when the file is of an older version.
+void require_present_schema(const SqliteConnection& connection);
+
+/// Gives the database another uuid.
+void renew_identity(const SqliteConnection& connection);
 
 /// True for a file in which no table was made yet.
 bool is_empty_database(const SqliteConnection& connection);

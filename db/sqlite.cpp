@@ -103,7 +103,7 @@ void SqliteConnection::open(const std::string& uri, int flags) {
   const int code = sqlite3_open_v2(uri.c_str(), &handle_,
                                    flags | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
   if (code == SQLITE_OK) return;
-  if (!handle_) throw Error(path_ + ": " + sqlite3_errstr(code) + ": " + sqlite_remedy(code));
+  if (!handle_) fail(code);
   fail();
 }
 
@@ -115,6 +115,10 @@ void SqliteConnection::close() {
 void SqliteConnection::fail() const {
   const int code = sqlite3_extended_errcode(handle_);
   throw Error(path_ + ": " + sqlite3_errmsg(handle_) + ": " + sqlite_remedy(code));
+}
+
+void SqliteConnection::fail(int code) const {
+  throw Error(path_ + ": " + sqlite3_errstr(code) + ": " + sqlite_remedy(code));
 }
 
 void SqliteConnection::execute(const char* sql) const {
@@ -154,6 +158,11 @@ SqliteStatement& SqliteStatement::bind(int parameter, std::span<const float> val
     check(sqlite3_bind_blob64(statement_, parameter, values.data(), values.size_bytes(),
                               SQLITE_TRANSIENT));
   }
+  return *this;
+}
+
+SqliteStatement& SqliteStatement::bind_real(int parameter, double value) {
+  check(sqlite3_bind_double(statement_, parameter, value));
   return *this;
 }
 

@@ -29,6 +29,8 @@ class SqliteConnection {
   int64_t changes() const { return sqlite3_changes64(handle_); }
   bool in_transaction() const { return sqlite3_get_autocommit(handle_) == 0; }
   [[noreturn]] void fail() const;
+  /// For calls that return their code instead of keeping it in the connection.
+  [[noreturn]] void fail(int code) const;
   sqlite3* handle() const { return handle_; }
 
  private:
@@ -50,6 +52,8 @@ class SqliteStatement {
   SqliteStatement& bind(int parameter, int64_t value);
   SqliteStatement& bind(int parameter, std::string_view value);
   SqliteStatement& bind(int parameter, std::span<const float> values);
+  /// A name of its own: an int would fit bind(double) as well as bind(int64_t).
+  SqliteStatement& bind_real(int parameter, double value);
   /// True when there is a row.
   bool step();
   /// For statements without rows; the statement can be bound and run again.
@@ -58,6 +62,9 @@ class SqliteStatement {
   void reset() { sqlite3_reset(statement_); }
 
   int64_t integer(int column) const { return sqlite3_column_int64(statement_, column); }
+  /// Of a blob.
+  int64_t bytes(int column) const { return sqlite3_column_bytes(statement_, column); }
+  double real(int column) const { return sqlite3_column_double(statement_, column); }
   std::string text(int column) const;
   /// Throws Error when the blob is not whole floats.
   std::vector<float> floats(int column) const;

@@ -1,6 +1,5 @@
 #include "db/database.h"
 
-#include <sqlite3.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,14 +19,6 @@ Motion small_motion(int frames, float value) {
     motion.positions[i] = value + 0.25f * static_cast<float>(i % 97);
   }
   return motion;
-}
-
-void run_sql(const std::string& path, const char* sql) {
-  sqlite3* handle = nullptr;
-  ASSERT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
-  EXPECT_EQ(sqlite3_exec(handle, sql, nullptr, nullptr, nullptr), SQLITE_OK)
-      << sqlite3_errmsg(handle);
-  sqlite3_close(handle);
 }
 
 TEST(Database, KeepsClipsOverReopening) {
@@ -252,7 +243,7 @@ TEST(Database, OtherProgramsAndNewerVersionsAreRefused) {
             }).find("is not a motion database"),
             std::string::npos);
   { Database database(folder / "new", OpenMode::create); }
-  run_sql(folder / "new", "PRAGMA user_version = 2");
+  run_sql(folder / "new", "PRAGMA user_version = 3");
   EXPECT_NE(error_of([&] { Database(folder / "new", OpenMode::read_only); }).find("newer version"),
             std::string::npos);
 }

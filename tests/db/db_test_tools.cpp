@@ -1,5 +1,6 @@
 #include "tests/db/db_test_tools.h"
 
+#include <sqlite3.h>
 #include <stdlib.h>
 
 #include <cmath>
@@ -48,12 +49,21 @@ Clip named_clip(const std::string& name) {
   return clip;
 }
 
+void run_sql(const std::string& path, const char* sql) {
+  sqlite3* handle = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(handle, sql, nullptr, nullptr, nullptr), SQLITE_OK)
+      << sqlite3_errmsg(handle);
+  sqlite3_close(handle);
+}
+
 nlohmann::json describe_database(const Database& database) {
   nlohmann::json all = nlohmann::json::array();
   for (const Clip& clip : database.clips()) {
     all.push_back({clip.name, clip.source, clip.source_file, clip.start_frame, clip.split,
                    clip.licence, clip.content_hash, clip.group, clip.mirrored, clip.skeleton,
-                   clip.frames, clip.captions, clip.labels, database.motion(clip.id).positions});
+                   clip.frames, clip.captions, clip.labels, clip.tags,
+                   database.motion(clip.id).positions});
   }
   return all;
 }

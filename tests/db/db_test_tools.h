@@ -43,6 +43,9 @@ std::string error_of(Function function) {
   return "";
 }
 
+/// Runs SQL behind the back of the program.
+void run_sql(const std::string& path, const char* sql);
+
 /// All clips of a database without the fields that the order of storing gives.
 nlohmann::json describe_database(const Database& database);
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace remomask {
+
+struct UpgradeReport {
+  int64_t version_before = 0, version = 0;  ///< of the format
+  uint64_t bytes_before = 0, bytes = 0;     ///< of the file
+};
+
+/// Brings a database to the present format, in one transaction, makes its
+/// full-text index anew and gives unused pages back to the disk. An index of it stays valid. Throws
+/// Error as Database() does; the old content stays then.
+UpgradeReport upgrade_database(const std::string& path);
+
+}  // namespace remomask

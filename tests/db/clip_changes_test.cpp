@@ -1,0 +1,168 @@
+#include <limits>
+
+#include "db/clip_speed.h"
+#include "db/database.h"
+#include "db/database_impl.h"
+#include "db/sqlite.h"
+#include "tests/db/db_test_tools.h"
+
+namespace remomask {
+namespace {
+
+class ClipChangesTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (int i = 0; i < 3; ++i) {
+      ids_.push_back(
+          database_.add_clip(named_clip(std::string(1, 'a' + i)), walking_motion(30, i)));
+    }
+    database_.store_embeddings("r", {embedding(0), embedding(1), embedding(2)});
+    database_.store_embeddings("s", {embedding(0), embedding(1)});
+  }
+  ClipEmbedding embedding(size_t clip, float value = 1.f) const {
+    return {ids_[clip], {value, static_cast<float>(clip)}, {value}, {value}};
+  }
+  bool change(size_t clip, const ClipChanges& changes) {
+    return database_.update_clip(ids_[clip], changes);
+  }
+
+  using Ids = std::vector<int64_t>;
+  TestFolder folder_;
+  Database database_{folder_ / "d", OpenMode::create};
+  Ids ids_;
+};
+
+TEST_F(ClipChangesTest, WhatIsNotGivenStays) {
+  const Clip before = database_.clip(ids_[0]);
+  const int64_t generation = database_.generation();
+  ClipChanges changes;
+  changes.split = "val";
+  changes.licence = "MIT";
+  changes.tags = {"new", "good", "new"};
+  changes.labels = nlohmann::json{{"content", "run"}, {"actions", nullptr}, {"count", 2}};
+  EXPECT_TRUE(change(0, changes));
+  EXPECT_EQ(database_.generation(), generation + 1);
+  const Clip after = database_.clip(ids_[0]);
+  EXPECT_EQ(after.split, "val");
+  EXPECT_EQ(after.licence, "MIT");
+  EXPECT_EQ(after.tags, (std::vector<std::string>{"good", "new"}));
+  EXPECT_EQ(after.labels, (nlohmann::json{{"content", "run"}, {"count", 2}}));
+  EXPECT_EQ(after.captions, before.captions);
+  EXPECT_EQ(database_.clips().at(0).tags, after.tags);
+  EXPECT_TRUE(database_.clips().at(1).tags.empty());
+  EXPECT_EQ(database_.embedded_clips("r"), ids_);
+  EXPECT_EQ(database_.clip(ids_[1]).split, "train");
+  // The same once more changes nothing: the search index stays up to date.
+  EXPECT_FALSE(change(0, changes));
+  EXPECT_EQ(database_.generation(), generation + 1);
+}
+
+TEST_F(ClipChangesTest, NewCaptionsTakeTheVectorsOfTheClipWithThem) {
+  ClipChanges changes;
+  changes.captions = database_.clip(ids_[1]).captions;
+  EXPECT_FALSE(change(1, changes));
+  EXPECT_EQ(database_.embedded_clips("r"), ids_);
+  changes.captions = {"someone hops."};
+  EXPECT_TRUE(change(1, changes));
+  EXPECT_EQ(database_.clip(ids_[1]).captions, *changes.captions);
+  EXPECT_EQ(database_.embedded_clips("r"), (Ids{ids_[0], ids_[2]}));
+  EXPECT_EQ(database_.embedded_clips("s"), (Ids{ids_[0]}));
+}
+
+TEST_F(ClipChangesTest, NothingIsStoredOfChangesThatMakeNoSense) {
+  const auto before = describe_database(database_);
+  const int64_t generation = database_.generation();
+  ClipChanges bad_split, bad_labels, bad_tag;
+  bad_split.captions = {"new"};
+  bad_split.split = "training";
+  bad_labels.licence = "MIT";
+  bad_labels.labels = nlohmann::json::array();
+  bad_tag.licence = "MIT";
+  for (const char* tag : {"", " a", "a ", "a\nb"}) {
+    bad_tag.tags = {tag};
+    EXPECT_THROW(change(0, bad_tag), Error) << tag;
+  }
+  EXPECT_THROW(change(0, bad_split), Error);
+  EXPECT_THROW(change(0, bad_labels), Error);
+  EXPECT_THROW(database_.update_clip(ids_[2] + 1, {}), Error);
+  EXPECT_EQ(describe_database(database_), before);
+  EXPECT_EQ(database_.generation(), generation);
+  EXPECT_EQ(database_.embedded_clips("r"), ids_);
+}
+
+TEST_F(ClipChangesTest, RemovedClipsTakeTagsAndVectorsAndTheirIdsNeverReturn) {
+  ClipChanges changes;
+  changes.tags = {"x"};
+  change(2, changes);
+  const int64_t generation = database_.generation();
+  EXPECT_THROW(database_.remove({ids_[0], ids_[2] + 1}), Error);
+  EXPECT_EQ(database_.clip_count(), 3);
+  EXPECT_EQ(database_.generation(), generation);
+  database_.remove({ids_[0], ids_[2]});
+  EXPECT_EQ(database_.generation(), generation + 1);
+  EXPECT_EQ(database_.embedded_clips("r"), (Ids{ids_[1]}));
+  const SqliteConnection connection(folder_ / "d", SqliteMode::read_only);
+  EXPECT_EQ(connection.integer("SELECT count(*) FROM tag"), 0);
+  EXPECT_GT(database_.add_clip(named_clip("c"), walking_motion(30, 2)), ids_[2]);
+}
+
+TEST_F(ClipChangesTest, AddedVectorsLeaveThoseOfOtherClips) {
+  const int64_t generation = database_.generation();
+  database_.add_embeddings("s", {embedding(2, 7.f), embedding(0, 8.f)});
+  EXPECT_EQ(database_.generation(), generation + 1);
+  EXPECT_EQ(database_.embedded_clips("s"), ids_);
+  const auto some = database_.embeddings("s", {ids_[2], ids_[0]});
+  ASSERT_EQ(some.size(), 2u);
+  EXPECT_EQ(some[0].clip_id, ids_[2]);
+  EXPECT_EQ(some[0].motion, (std::vector<float>{7.f, 2.f}));
+  EXPECT_EQ(some[1].text, (std::vector<float>{8.f}));
+  EXPECT_EQ(database_.embedding("s", ids_[1])->parts, (std::vector<float>{1.f}));
+  EXPECT_EQ(database_.embedding("r", ids_[0])->parts, (std::vector<float>{1.f}));
+  EXPECT_THROW(database_.embeddings("s", {ids_[2] + 1}), Error);
+  EXPECT_THROW(database_.add_embeddings("s", {{ids_[2] + 1, {1.f}, {}, {}}}), Error);
+  EXPECT_EQ(database_.retrievers(), (std::vector<std::string>{"r", "s"}));
+}
+
+TEST_F(ClipChangesTest, EmbeddedClipsReadsAnIndexAlone) {
+  const SqliteConnection connection(folder_ / "d", SqliteMode::read_only);
+  SqliteStatement plan(connection, (std::string("EXPLAIN QUERY PLAN ") + kEmbeddedClips).c_str());
+  std::string text;
+  while (plan.step()) text += plan.text(3) + "; ";
+  EXPECT_NE(text.find("USING COVERING INDEX embedding_by_retriever"), std::string::npos) << text;
+  EXPECT_EQ(text.find("TEMP B-TREE"), std::string::npos) << text;
+}
+
+TEST_F(ClipChangesTest, SpeedIsThePathOverTheGroundInMetresASecond) {
+  Motion motion(3, 22);
+  motion.set(1, 0, Vec3(0.3, 5, 0.4));  // half a metre in a twentieth of a second
+  motion.set(2, 0, Vec3(0.3, 9, 0.4));
+  EXPECT_NEAR(mean_root_speed(motion), 5.0, 1e-6);
+  EXPECT_EQ(mean_root_speed(Motion(1, 22)), 0);
+  const int64_t id = database_.add_clip(named_clip("speed"), motion);
+  EXPECT_NEAR(database_.clip(id).speed, 5.0, 1e-6);
+}
+
+TEST_F(ClipChangesTest, SnapshotSeesOneStateWhileAnotherProgramWrites) {
+  const Database reader(folder_ / "d", OpenMode::read_only);
+  {
+    const ReadSnapshot snapshot(reader);
+    const ReadSnapshot inner(reader);
+    const int64_t generation = reader.generation();
+    database_.remove({ids_[0]});
+    EXPECT_EQ(reader.generation(), generation);
+    EXPECT_EQ(reader.clips().size(), 3u);
+    EXPECT_EQ(reader.clip(ids_[0]).name, "a");
+    EXPECT_EQ(reader.embedded_clips("r"), ids_);
+  }
+  EXPECT_EQ(reader.clips().size(), 2u);
+  {
+    const ReadSnapshot snapshot(database_);
+    EXPECT_THROW(database_.remove({ids_[1]}), Error);
+    EXPECT_EQ(database_.clip_count(), 2);
+  }
+  database_.remove({ids_[1]});
+  EXPECT_EQ(database_.clip_count(), 1);
+}
+
+}  // namespace
+}  // namespace remomask

@@ -1,0 +1,102 @@
+#include <filesystem>
+
+#include "db/database.h"
+#include "db/sqlite.h"
+#include "db/upgrade.h"
+#include "tests/db/db_test_tools.h"
+
+namespace remomask {
+namespace {
+
+// Takes away what version 2 added.
+constexpr const char* kDowngrade = R"sql(
+DROP TRIGGER caption_inserted; DROP TRIGGER caption_deleted; DROP TRIGGER caption_updated;
+DROP TABLE caption_words; DROP VIEW caption_row; DROP TABLE tag;
+DROP INDEX embedding_by_retriever;
+ALTER TABLE clip DROP COLUMN speed;
+PRAGMA user_version = 1;
+)sql";
+
+std::string schema_of(const std::string& path) {
+  const SqliteConnection connection(path, SqliteMode::read_only);
+  SqliteStatement rows(connection, "SELECT name, sql FROM sqlite_master ORDER BY name");
+  std::string schema;
+  while (rows.step()) schema += rows.text(0) + ": " + rows.text(1) + "\n";
+  return schema;
+}
+
+class UpgradeTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    Database database(path_, OpenMode::create);
+    const int64_t a = database.add_clip(named_clip("a"), walking_motion(40, 1));
+    Clip other = named_clip("b");
+    other.captions = {"someone jumps."};
+    database.add_clip(other, walking_motion(30, 6));
+    database.store_embeddings("r", {{a, {1.f}, {2.f}, {3.f}}});
+    before_ = describe_database(database);
+    speed_ = database.clip(a).speed;
+    generation_ = database.generation();
+    uuid_ = database.uuid();
+  }
+
+  TestFolder folder_;
+  std::string path_ = folder_ / "d";
+  nlohmann::json before_;
+  double speed_ = 0;
+  int64_t generation_ = 0;
+  std::string uuid_;
+};
+
+TEST_F(UpgradeTest, AnOldFileBecomesWhatANewOneIs) {
+  const std::string schema = schema_of(path_);
+  run_sql(path_, kDowngrade);
+  ASSERT_NE(schema_of(path_), schema);
+  const Database database(path_, OpenMode::read_write);
+  EXPECT_EQ(schema_of(path_), schema);
+  EXPECT_EQ(describe_database(database), before_);
+  EXPECT_EQ(database.clip(*database.find_name("a")).speed, speed_);
+  EXPECT_GT(speed_, 0.1);
+  EXPECT_EQ(database.generation(), generation_);
+  EXPECT_EQ(database.uuid(), uuid_);
+  EXPECT_EQ(database.embeddings("r").at(0).text, (std::vector<float>{3.f}));
+  EXPECT_EQ(database.match_captions("walk").at(0).clip_id, *database.find_name("a"));
+  EXPECT_EQ(database.match_captions("jump").at(0).clip_id, *database.find_name("b"));
+}
+
+TEST_F(UpgradeTest, ReadingAnOldFileSaysHowToUpgradeAndChangesNothing) {
+  run_sql(path_, kDowngrade);
+  const std::string schema = schema_of(path_);
+  const std::string message = error_of([&] { Database(path_, OpenMode::read_only); });
+  EXPECT_NE(message.find("older version"), std::string::npos) << message;
+  EXPECT_NE(message.find("remomask db upgrade " + path_), std::string::npos) << message;
+  EXPECT_EQ(schema_of(path_), schema);
+}
+
+TEST_F(UpgradeTest, AFailingUpgradeLeavesTheOldFile) {
+  run_sql(path_, kDowngrade);
+  run_sql(path_, "UPDATE motion SET positions = x'00000000' WHERE clip_id = 2");
+  const std::string schema = schema_of(path_);
+  const std::string message = error_of([&] { Database(path_, OpenMode::read_write); });
+  EXPECT_NE(message.find("clip number 2 is cut off"), std::string::npos) << message;
+  EXPECT_EQ(schema_of(path_), schema);
+  EXPECT_NE(error_of([&] { Database(path_, OpenMode::read_only); }).find("older"),
+            std::string::npos);
+}
+
+TEST_F(UpgradeTest, CommandReportsAndGivesPagesBack) {
+  run_sql(path_, kDowngrade);
+  run_sql(path_, "CREATE TABLE t (x); INSERT INTO t VALUES (zeroblob(1000000)); DROP TABLE t");
+  const UpgradeReport first = upgrade_database(path_);
+  EXPECT_EQ(first.version_before, 1);
+  EXPECT_EQ(first.version, 2);
+  EXPECT_LT(first.bytes + 900000, first.bytes_before);
+  const UpgradeReport second = upgrade_database(path_);
+  EXPECT_EQ(second.version_before, 2);
+  const Database database(path_, OpenMode::read_only);
+  EXPECT_EQ(describe_database(database), before_);
+  EXPECT_EQ(database.generation(), generation_);
+}
+
+}  // namespace
+}  // namespace remomask
