@@ -1,48 +1,153 @@
 #include <fmt/format.h>
 
+#include "base/error.h"
+#include "index/motion_search.h"
+#include "motion/motion_file.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
 namespace remomask {
 
+namespace {
+
+struct SearchCommandOptions {
+  SearchQuery query;
+  FileOptions files;
+  FilterOptions filter;
+  std::string like_file;
+  std::optional<double> from, to;
+  bool ungrouped = false, captions = false;
+};
+
+void add_query_options(CLI::App& command, SearchCommandOptions& options) {
+  SearchQuery& query = options.query;
+  command.add_option("text", query.text, "what to look for");
+  command.add_option("--like", options.like_file, "a motion file (BVH, npy): more like this");
+  command.add_option("--from", options.from, "of the motion file: from this second");
+  command.add_option("--to", options.to, "of the motion file: up to this second");
+  command.add_option("--like-clip", query.like_clip, "a stored clip by name: more like it");
+  command
+      .add_option("--parts", query.parts,
+                  "compare only these parts of the motion: left_arm, right_arm, arms, left_leg, "
+                  "right_leg, legs, upper_spine_head, root_lower_spine, torso")
+      ->delimiter(',');
+  command
+      .add_option("--text-weight", query.text_weight, "of the sentence, beside that of the motion")
+      ->capture_default_str();
+  command.add_option("--motion-weight", query.motion_weight, "of the motion")
+      ->capture_default_str();
+  command.add_flag("--captions", options.captions,
+                   "list captions that describe the motion, instead of clips");
+}
+
+void add_result_options(CLI::App& command, SearchCommandOptions& options) {
+  command.add_option("-k", options.query.k, "number of hits")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--ungrouped", options.ungrouped,
+                   "list windows, mirror copies and duplicates of a motion one by one");
+  command.add_option("--least-similarity", options.query.least_similarity,
+                     "leave out what is less similar (cosine)");
+}
+
+SearchQuery complete_query(const SearchCommandOptions& options) {
+  SearchQuery query = options.query;
+  query.filter = options.filter.filter();
+  query.grouped = !options.ungrouped;
+  if (!options.like_file.empty()) {
+    query.motion = load_motion_file(options.like_file).motion;
+    if (options.from || options.to) {
+      query.motion = cut_motion(*query.motion, options.from.value_or(0), options.to);
+    }
+  } else if (options.from || options.to) {
+    throw Error("--from and --to choose a piece of a motion file; name one with --like");
+  }
+  return query;
+}
+
+nlohmann::json query_json(const SearchCommandOptions& options) {
+  nlohmann::json query = {{"query", options.query.text}};
+  if (!options.like_file.empty()) query["like"] = options.like_file;
+  if (!options.query.like_clip.empty()) query["like_clip"] = options.query.like_clip;
+  return query;
+}
+
+nlohmann::json motion_hit_json(const MotionHit& hit) {
+  nlohmann::json json = hit_json({hit.clip, hit.similarity, hit.rank});
+  json["folded"] = hit.folded;
+  return json;
+}
+
+void print_answer(const SearchAnswer& answer, const SearchQuery& query) {
+  if (answer.candidates == 0) {
+    fmt::print("no clip passes the filters\n");
+  } else if (answer.hits.empty() && answer.refused) {
+    fmt::print("nothing fits: the most similar of {} clips is {} with {:.3f}, below {:g}\n",
+               answer.candidates, answer.refused->clip.name, answer.refused->similarity,
+               *query.least_similarity);
+  }
+  for (const MotionHit& hit : answer.hits) {
+    fmt::print("{:3}  {:.3f}  {:5.1f} s  {:<32} {}{}\n", hit.rank, hit.similarity,
+               clip_seconds(hit.clip), hit.clip.name,
+               hit.clip.captions.empty() ? "" : hit.clip.captions.front(),
+               hit.folded > 0 ? fmt::format(" (+{} of the same motion)", hit.folded) : "");
+  }
+}
+
+void search_clips(const MotionSearch& search, const SearchCommandOptions& options,
+                  Program& program) {
+  const SearchQuery query = complete_query(options);
+  const SearchAnswer answer = search.search(query);
+  if (!program.json) return print_answer(answer, query);
+  nlohmann::json document = query_json(options);
+  document["candidates"] = answer.candidates;
+  document["hits"] = nlohmann::json::array();
+  for (const MotionHit& hit : answer.hits) document["hits"].push_back(motion_hit_json(hit));
+  if (answer.refused) document["refused"] = motion_hit_json(*answer.refused);
+  program.print_json(document);
+}
+
+void search_captions(const MotionSearch& search, const SearchCommandOptions& options,
+                     Program& program) {
+  const std::vector<CaptionHit> hits = search.captions_for(complete_query(options));
+  if (!program.json) {
+    if (hits.empty()) fmt::print("no clip with captions passes the filters\n");
+    for (const CaptionHit& hit : hits) {
+      fmt::print("{:3}  {:.3f}  {:<60} {}{}\n", hit.rank, hit.similarity, hit.caption,
+                 hit.clips.front(),
+                 hit.clips.size() > 1 ? fmt::format(" (+{})", hit.clips.size() - 1) : "");
+    }
+    return;
+  }
+  nlohmann::json document = query_json(options);
+  document["captions"] = nlohmann::json::array();
+  for (const CaptionHit& hit : hits) {
+    document["captions"].push_back({{"rank", hit.rank},
+                                    {"caption", hit.caption},
+                                    {"similarity", hit.similarity},
+                                    {"clips", hit.clips}});
+  }
+  program.print_json(document);
+}
+
+}  // namespace
+
 void register_search(CLI::App& app, Program& program) {
-  struct Options {
-    std::string text;
-    FileOptions files;
-    FilterOptions filter;
-    int k = 10;
-    bool ungrouped = false;
-  };
-  auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(app, "search", "find motions by meaning",
-                                  "remomask search \"someone waves\" -k 5 --min-seconds 2");
-  command->add_option("text", options->text, "what to look for")->required();
+  auto options = std::make_shared<SearchCommandOptions>();
+  CLI::App* command = add_command(app, "search", "find motions by meaning or by example",
+                                  "remomask search \"someone waves\" -k 5 --min-seconds 2\n"
+                                  "  remomask search --like walk.bvh --parts arms\n"
+                                  "  remomask search --like walk.bvh --captions");
+  add_query_options(*command, *options);
   options->files.add_database(*command);
   options->files.add_model(*command);
   options->filter.add(*command);
-  command->add_option("-k", options->k, "number of hits")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--ungrouped", options->ungrouped,
-                    "list windows, mirror copies and duplicates of a motion one by one");
+  add_result_options(*command, *options);
   command->callback([options, &program] {
-    const std::string model_path = options->files.model_path();
-    const SearchWorkspace workspace(load_model(model_path), model_path,
-                                    options->files.database_path(), options->files.index_path());
-    SearchOptions search;
-    search.k = options->k;
-    search.filter = options->filter.filter();
-    search.collapse = options->ungrouped ? Collapse::none : Collapse::groups;
-    const auto hits = workspace.search(options->text, search);
-    if (program.json) {
-      return program.print_json({{"query", options->text}, {"hits", hits_json(hits)}});
-    }
-    if (hits.empty()) fmt::print("no clip passes the filters\n");
-    for (const SearchHit& hit : hits) {
-      fmt::print("{:3}  {:.3f}  {:5.1f} s  {:<32} {}\n", hit.rank, hit.similarity,
-                 clip_seconds(hit.clip), hit.clip.name,
-                 hit.clip.captions.empty() ? "" : hit.clip.captions.front());
-    }
+    const MotionSearch search(options->files.model_path(), options->files.database_path(),
+                              options->files.index_path());
+    options->captions ? search_captions(search, *options, program)
+                      : search_clips(search, *options, program);
   });
 }
 

@@ -68,19 +68,21 @@ std::vector<SearchHit> SearchWorkspace::search(const std::string& text,
   return search_database(database_, index_, query.data_ptr<float>(), 1, options).front();
 }
 
+nlohmann::json hit_json(const SearchHit& hit) {
+  return {{"rank", hit.rank},
+          {"clip_id", hit.clip.id},
+          {"clip", hit.clip.name},
+          {"similarity", hit.similarity},
+          {"captions", hit.clip.captions},
+          {"source", hit.clip.source},
+          {"licence", hit.clip.licence},
+          {"split", hit.clip.split},
+          {"seconds", clip_seconds(hit.clip)}};
+}
+
 nlohmann::json hits_json(const std::vector<SearchHit>& hits) {
   nlohmann::json list = nlohmann::json::array();
-  for (const SearchHit& hit : hits) {
-    list.push_back({{"rank", hit.rank},
-                    {"clip_id", hit.clip.id},
-                    {"clip", hit.clip.name},
-                    {"similarity", hit.similarity},
-                    {"captions", hit.clip.captions},
-                    {"source", hit.clip.source},
-                    {"licence", hit.clip.licence},
-                    {"split", hit.clip.split},
-                    {"seconds", clip_seconds(hit.clip)}});
-  }
+  for (const SearchHit& hit : hits) list.push_back(hit_json(hit));
   return list;
 }
 

@@ -57,6 +57,9 @@ class SearchWorkspace {
 const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
                                 const std::string& kind, const std::string& model_path);
 
+/// One hit as it is printed.
+nlohmann::json hit_json(const SearchHit& hit);
+
 /// Evidence as it is printed and stored in generated files.
 nlohmann::json hits_json(const std::vector<SearchHit>& hits);
 

@@ -1,0 +1,100 @@
+#include "index/hit_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+
+namespace remomask {
+
+namespace {
+
+/// The nearest clips of a query, as many as are wanted.
+class NearestClips {
+ public:
+  NearestClips(const SearchScene& scene, LinearQuery query)
+      : scene_(scene), query_(std::move(query)) {
+    if (!query_.parts.empty()) return;
+    double square = 0;
+    for (const float value : query_.global) square += static_cast<double>(value) * value;
+    length_ = std::sqrt(square);
+    if (length_ < 1e-6) {
+      throw Error("the sentence and the motion cancel each other out; change their weights");
+    }
+    for (float& value : query_.global) value = static_cast<float>(value / length_);
+  }
+
+  std::vector<VectorHit> best(int64_t k) const {
+    if (!query_.parts.empty()) return scene_.bodies->nearest(query_, k, scene_.limit());
+    auto hits = scene_.state->index.search(query_.global.data(), 1, k, scene_.limit()).front();
+    for (VectorHit& hit : hits) hit.similarity = static_cast<float>(hit.similarity * length_);
+    return hits;
+  }
+
+ private:
+  const SearchScene& scene_;
+  LinearQuery query_;
+  double length_ = 1;
+};
+
+class HitList {
+ public:
+  HitList(const SearchScene& scene, const SearchQuery& query) : scene_(scene), query_(query) {}
+
+  bool full() const { return static_cast<int>(answer_.hits.size()) == query_.k; }
+
+  void add(const VectorHit& found) {
+    const Clip& clip = scene_.state->clip(found.clip_id);
+    if (query_.grouped && !seen_.insert(clip.group).second) return;
+    MotionHit hit;
+    hit.clip = clip;
+    hit.similarity = found.similarity;
+    if (query_.grouped) {
+      hit.folded = static_cast<int>(scene_.candidates(scene_.state->groups.at(clip.group))) - 1;
+    }
+    if (query_.least_similarity && found.similarity < *query_.least_similarity) {
+      if (!answer_.refused || found.similarity > answer_.refused->similarity) {
+        answer_.refused = std::move(hit);
+      }
+      return;
+    }
+    hit.rank = static_cast<int>(answer_.hits.size()) + 1;
+    answer_.hits.push_back(std::move(hit));
+  }
+
+  SearchAnswer finish() {
+    answer_.candidates =
+        scene_.allowed ? scene_.candidates(*scene_.allowed) : scene_.state->index.count();
+    return std::move(answer_);
+  }
+
+ private:
+  const SearchScene& scene_;
+  const SearchQuery& query_;
+  std::set<std::string> seen_;
+  SearchAnswer answer_;
+};
+
+}  // namespace
+
+SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
+                          const LinearQuery& vectors) {
+  const NearestClips nearest(scene, vectors);
+  const int64_t count = scene.state->index.count();
+  // Grouping leaves gaps: look further, until there are enough or no more.
+  for (int64_t wanted = std::min<int64_t>(query.k, count);; wanted = std::min(4 * wanted, count)) {
+    HitList list(scene, query);
+    const std::vector<VectorHit> found = nearest.best(wanted);
+    for (const VectorHit& hit : found) {
+      if (list.full()) break;
+      list.add(hit);
+    }
+    const bool exhausted = static_cast<int64_t>(found.size()) < wanted || wanted == count;
+    const bool below = query.least_similarity && !found.empty() &&
+                       found.back().similarity < *query.least_similarity;
+    if (list.full() || exhausted || below) return list.finish();
+  }
+}
+
+}  // namespace remomask

@@ -1,0 +1,188 @@
+#include "index/motion_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+#include <numeric>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "index/filter.h"
+#include "index/hit_list.h"
+#include "index/search_scene.h"
+#include "index/vector_index.h"
+#include "motion/features.h"
+#include "nn/model_file.h"
+#include "retriever/retriever.h"
+#include "text/caption.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr int kLeastQueryFrames = 4;   // as clips that are embedded
+constexpr int kMostQueryFrames = 200;  // of the longest clip
+constexpr int64_t kCaptionClips = 50;  // whose captions are compared one by one
+
+std::vector<float> numbers(const at::Tensor& tensor) {
+  const at::Tensor flat = tensor.contiguous();
+  return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
+}
+
+float cosine(const std::vector<float>& left, const std::vector<float>& right) {
+  return static_cast<float>(std::inner_product(left.begin(), left.end(), right.begin(), 0.0));
+}
+
+enum class Need { index, bodies, captions };
+
+}  // namespace
+
+struct MotionSearch::Impl {
+  std::string database_path, index_path;
+  Retriever retriever;
+  mutable std::mutex mutex;  // of all that follows
+  mutable Database database;
+  mutable std::shared_ptr<SearchState> state;
+
+  Impl(const std::string& model_path, const std::string& database_file,
+       const std::string& index_file)
+      : database_path(database_file),
+        index_path(index_file.empty() ? default_index_path(database_file) : index_file),
+        retriever(load_stage(model_path, "retriever")),
+        database(database_file, OpenMode::read_only) {
+    read_state(VectorIndex::load(index_path, database, retriever.hash()));
+  }
+
+  void read_state(VectorIndex index) const {
+    state = std::make_shared<SearchState>(std::move(index), database.clips());
+  }
+
+  void refresh() const {
+    if (state->index.stamp().generation == database.generation()) return;
+    read_state(VectorIndex::build(database, retriever.hash()));
+  }
+
+  std::optional<std::vector<int64_t>> allowed_clips(const SearchQuery& query) const {
+    ClipFilter filter = query.filter;
+    if (!query.like_clip.empty()) {
+      const Clip clip = database.clip(stored_clip(query.like_clip));
+      filter.excluded_clips.insert(clip.id);
+      if (query.grouped) filter.excluded_groups.insert(clip.group);
+    }
+    if (filter.empty()) return std::nullopt;
+    return matching_clips(state->clips, filter);
+  }
+
+  int64_t stored_clip(const std::string& name) const {
+    if (const auto id = database.find_name(name)) return *id;
+    throw Error(database.path() + ": there is no clip '" + name + "'");
+  }
+
+  SearchScene scene(const SearchQuery& query, Need need) const {
+    const std::scoped_lock lock(mutex);
+    refresh();
+    SearchScene scene;
+    if (need == Need::bodies && !state->bodies) {
+      state->bodies = std::make_shared<VectorTable>(
+          VectorTable::of_bodies(database.embeddings(retriever.hash())));
+    }
+    if (need == Need::captions && !state->captions) {
+      state->captions = std::make_shared<VectorTable>(
+          VectorTable::of_captions(database.embeddings(retriever.hash())));
+    }
+    scene.state = state;
+    scene.bodies = state->bodies;
+    scene.captions = state->captions;
+    scene.allowed = allowed_clips(query);
+    if (!query.like_clip.empty()) {
+      scene.like = database.embedding(retriever.hash(), stored_clip(query.like_clip));
+      if (!scene.like) {
+        throw Error(database.path() + ": clip '" + query.like_clip +
+                    "' has no vectors of this retriever; run: remomask index DB");
+      }
+    }
+    return scene;
+  }
+
+  /// [E] of one caption.
+  std::vector<float> text_vector(const std::string& text) const {
+    return numbers(retriever.encode_text({normalise_prompt(text)}).query[0]);
+  }
+
+  ClipEmbedding motion_vectors(const Motion& motion) const {
+    const double fps = humanml_skeleton().fps;
+    if (motion.frames < kLeastQueryFrames || motion.frames > kMostQueryFrames) {
+      throw Error(fmt::format(
+          "the motion to compare with is {:.2f} s long; it must be {:.1f} to {:.0f} s: choose a "
+          "piece of it (--from, --to)",
+          motion.frames / fps, kLeastQueryFrames / fps, kMostQueryFrames / fps));
+    }
+    const Features features =
+        extract_features_all_frames(motion, humanml_skeleton(), retriever.feature_mode());
+    const MotionEncoding encoding = retriever.encode_motion({&features});
+    return {0, numbers(encoding.global[0]), numbers(encoding.parts[0]), {}};
+  }
+
+  QueryVectors vectors(const SearchQuery& query, const SearchScene& scene) const {
+    QueryVectors result;
+    if (!query.text.empty()) result.text = text_vector(query.text);
+    if (query.motion || scene.like) {
+      ClipEmbedding motion = scene.like ? *scene.like : motion_vectors(*query.motion);
+      result.motion = std::move(motion.motion);
+      result.motion_parts = std::move(motion.parts);
+    }
+    return result;
+  }
+};
+
+MotionSearch::MotionSearch(const std::string& model_path, const std::string& database_path,
+                           const std::string& index_path)
+    : impl_(std::make_unique<Impl>(model_path, database_path, index_path)) {}
+MotionSearch::~MotionSearch() = default;
+MotionSearch::MotionSearch(MotionSearch&&) noexcept = default;
+MotionSearch& MotionSearch::operator=(MotionSearch&&) noexcept = default;
+
+SearchAnswer MotionSearch::search(const SearchQuery& query) const {
+  check_query(query);
+  const Need need = query.parts.empty() ? Need::index : Need::bodies;
+  const SearchScene scene = impl_->scene(query, need);
+  return collect_hits(scene, query, linear_query(impl_->vectors(query, scene), query));
+}
+
+std::vector<CaptionHit> MotionSearch::captions_for(const SearchQuery& query) const {
+  check_query(query);
+  if (!query.text.empty() || !query.parts.empty()) {
+    throw Error("captions are looked up for a whole motion alone; leave sentence and parts away");
+  }
+  const SearchScene scene = impl_->scene(query, Need::captions);
+  const std::vector<float> motion = impl_->vectors(query, scene).motion;
+  const auto near = scene.captions->nearest({motion, {}}, kCaptionClips, scene.limit());
+  std::vector<CaptionHit> hits;
+  std::unordered_map<std::string, size_t> places;
+  for (const VectorHit& found : near) {
+    const Clip& clip = scene.state->clip(found.clip_id);
+    for (const std::string& caption : clip.captions) {
+      const std::string normal = normalise_caption(caption);
+      if (normal.empty()) continue;
+      const auto [place, is_new] = places.emplace(normal, hits.size());
+      if (is_new) {
+        const std::vector<float> text = impl_->text_vector(normal);
+        CaptionHit hit;
+        hit.caption = caption;
+        hit.similarity = cosine(text, motion);
+        hits.push_back(std::move(hit));
+      }
+      std::vector<std::string>& names = hits[place->second].clips;
+      if (names.empty() || names.back() != clip.name) names.push_back(clip.name);
+    }
+  }
+  std::stable_sort(hits.begin(), hits.end(), [](const CaptionHit& left, const CaptionHit& right) {
+    return left.similarity > right.similarity;
+  });
+  if (hits.size() > static_cast<size_t>(query.k)) hits.resize(static_cast<size_t>(query.k));
+  for (size_t i = 0; i < hits.size(); ++i) hits[i].rank = static_cast<int>(i) + 1;
+  return hits;
+}
+
+}  // namespace remomask

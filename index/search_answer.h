@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "db/database.h"
+
+namespace remomask {
+
+struct MotionHit {
+  int rank = 0;  ///< from 1
+  Clip clip;
+  float similarity = 0;  ///< to the query, -1 .. 1, see linear_query()
+  int folded = 0;        ///< further clips of its group that pass the filter and are not listed
+};
+
+struct SearchAnswer {
+  std::vector<MotionHit> hits;       ///< best first
+  int64_t candidates = 0;            ///< clips that pass the filter
+  std::optional<MotionHit> refused;  ///< the most similar clip that a limit kept out
+};
+
+struct CaptionHit {
+  int rank = 0;
+  std::string caption;
+  float similarity = 0;            ///< cosine of motion and caption
+  std::vector<std::string> clips;  ///< names of the near clips that have it
+};
+
+}  // namespace remomask

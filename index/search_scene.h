@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "db/database.h"
+#include "index/vector_index.h"
+#include "index/vector_table.h"
+
+namespace remomask {
+
+/// One state of a database, shared by all searches in it.
+struct SearchState {
+  VectorIndex index;
+  std::vector<Clip> clips;                                       ///< by id
+  std::unordered_map<std::string, std::vector<int64_t>> groups;  ///< Clip::group -> ids
+  std::shared_ptr<const VectorTable> bodies, captions;           ///< read when first needed
+
+  SearchState(VectorIndex vector_index, std::vector<Clip> all_clips);
+
+  const Clip& clip(int64_t id) const;
+};
+
+/// All that one search reads from the database.
+struct SearchScene {
+  std::shared_ptr<const SearchState> state;
+  std::shared_ptr<const VectorTable> bodies, captions;
+  std::optional<std::vector<int64_t>> allowed;  ///< ids that pass the filter, ascending
+  std::optional<ClipEmbedding> like;            ///< vectors of SearchQuery::like_clip
+
+  const std::vector<int64_t>* limit() const { return allowed ? &*allowed : nullptr; }
+  /// How many of these clips are embedded and pass the filter.
+  int64_t candidates(const std::vector<int64_t>& ids) const;
+};
+
+}  // namespace remomask

@@ -1,0 +1,355 @@
+// With the shipped retriever and a database of random vectors, where the right
+// answer is a sum over all clips; and with the shipped database.
+#include "index/motion_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <set>
+#include <span>
+#include <thread>
+
+#include "motion/body_parts.h"
+#include "nn/model_file.h"
+#include "retriever/retriever.h"
+#include "tests/db/db_test_tools.h"
+#include "tests/index/index_test_tools.h"
+
+namespace remomask {
+namespace {
+
+const std::string kModels = REMOMASK_SOURCE_DIR "/models/";
+const std::string kModel = kModels + "base.safetensors";
+
+std::vector<float> floats_of(const at::Tensor& tensor) {
+  const at::Tensor flat = tensor.contiguous();
+  return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
+}
+
+double dot(std::span<const float> left, std::span<const float> right) {
+  return std::inner_product(left.begin(), left.end(), right.begin(), 0.0);
+}
+
+class MotionSearchTest : public ::testing::Test {
+ protected:
+  static constexpr int kClips = 90;
+
+  static void SetUpTestSuite() {
+    folder_ = new TestFolder;
+    retriever_ = new Retriever(load_stage(kModel, "retriever"));
+    const std::string path = *folder_ / "motions.sqlite";
+    {
+      Database database(path, OpenMode::create);
+      for (int i = 0; i < kClips; ++i) {
+        Clip clip = named_clip("clip" + std::to_string(i));
+        clip.group = "test/group" + std::to_string(i % 30);  // three clips each
+        clip.split = i % 2 == 0 ? "train" : "val";
+        clip.labels["side"] = i % 3 == 0 ? "left" : "right";
+        clip.captions = {"a person does number " + std::to_string(i) + ".", "shared words."};
+        add_test_clip(database, clip, 20 + i);
+      }
+      store_random_vectors(database, 5);
+      VectorIndex::build(database, retriever_->hash()).save(path + ".index");
+    }
+    database_ = new Database(path, OpenMode::read_only);
+    search_ = new MotionSearch(kModel, path);
+  }
+  static void TearDownTestSuite() {
+    delete search_;
+    delete database_;
+    delete retriever_;
+    delete folder_;
+  }
+
+  static void store_random_vectors(Database& database, uint64_t seed) {
+    const auto width = static_cast<size_t>(retriever_->embedding_width());
+    const auto part_width = static_cast<size_t>(retriever_->part_width());
+    std::vector<ClipEmbedding> embeddings;
+    for (const Clip& clip : database.clips()) {
+      const uint64_t own = seed * 1000 + static_cast<uint64_t>(clip.id);
+      ClipEmbedding embedding;
+      embedding.clip_id = clip.id;
+      embedding.motion = random_directions(1, static_cast<int>(width), own);
+      embedding.parts = random_directions(kBodyParts, static_cast<int>(part_width), own + 1);
+      embedding.text = random_directions(1, static_cast<int>(width), own + 2);
+      embeddings.push_back(std::move(embedding));
+    }
+    database.store_embeddings(retriever_->hash(), embeddings);
+  }
+
+  static ClipEmbedding vectors_of(const std::string& name) {
+    return *database_->embedding(retriever_->hash(), *database_->find_name(name));
+  }
+  static std::vector<float> encode(const std::string& text) {
+    return floats_of(retriever_->encode_text({text}).query[0]);
+  }
+
+  using Similarity = std::function<double(const ClipEmbedding&)>;
+  using Passes = std::function<bool(const Clip&)>;
+
+  /// The answer by definition: every clip scored, sorted, filtered, grouped.
+  static std::vector<std::pair<std::string, double>> by_definition(const Similarity& similarity,
+                                                                   const SearchQuery& query,
+                                                                   const Passes& passes) {
+    std::vector<std::pair<double, int64_t>> scored;
+    for (const ClipEmbedding& clip : database_->embeddings(retriever_->hash())) {
+      scored.emplace_back(-similarity(clip), clip.clip_id);
+    }
+    std::sort(scored.begin(), scored.end());
+    std::vector<std::pair<std::string, double>> result;
+    std::set<std::string> groups;
+    for (const auto& [score, id] : scored) {
+      const Clip clip = database_->clip(id);
+      if (!passes(clip)) continue;
+      if (query.grouped && !groups.insert(clip.group).second) continue;
+      if (static_cast<int>(result.size()) < query.k) result.emplace_back(clip.name, -score);
+    }
+    return result;
+  }
+
+  static void expect_exact(const SearchQuery& query, const Similarity& similarity,
+                           const Passes& passes) {
+    const auto expected = by_definition(similarity, query, passes);
+    const SearchAnswer answer = search_->search(query);
+    ASSERT_EQ(answer.hits.size(), expected.size());
+    for (size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(answer.hits[i].clip.name, expected[i].first) << i;
+      EXPECT_NEAR(answer.hits[i].similarity, expected[i].second, 1e-6);
+      EXPECT_EQ(answer.hits[i].rank, static_cast<int>(i) + 1);
+    }
+  }
+
+  /// Without and with filter, grouped and not, few and many.
+  static void expect_exact_however_filtered(SearchQuery query, const Similarity& similarity) {
+    std::string like_group = "none";
+    if (!query.like_clip.empty()) {
+      like_group = database_->clip(*database_->find_name(query.like_clip)).group;
+    }
+    const auto other = [&](const Clip& clip) {
+      return clip.name != query.like_clip && (!query.grouped || clip.group != like_group);
+    };
+    for (const bool grouped : {true, false}) {
+      for (const int k : {3, 25, 200}) {
+        query.grouped = grouped;
+        query.k = k;
+        query.filter = {};
+        expect_exact(query, similarity, other);
+        query.filter.splits = {"val"};
+        query.filter.labels = {{"side", "right"}};
+        query.filter.min_seconds = 2;
+        expect_exact(query, similarity, [&](const Clip& clip) {
+          return other(clip) && clip.split == "val" && clip.labels["side"] == "right" &&
+                 clip.frames >= 40;
+        });
+      }
+    }
+  }
+
+  static TestFolder* folder_;
+  static Retriever* retriever_;
+  static Database* database_;
+  static MotionSearch* search_;
+};
+
+TestFolder* MotionSearchTest::folder_ = nullptr;
+Retriever* MotionSearchTest::retriever_ = nullptr;
+Database* MotionSearchTest::database_ = nullptr;
+MotionSearch* MotionSearchTest::search_ = nullptr;
+
+TEST_F(MotionSearchTest, FindsBySentence) {
+  SearchQuery query;
+  query.text = "a person walks";
+  const auto text = encode(query.text);
+  expect_exact_however_filtered(query,
+                                [&](const ClipEmbedding& clip) { return dot(text, clip.motion); });
+}
+
+TEST_F(MotionSearchTest, FindsByMotion) {
+  SearchQuery query;
+  query.like_clip = "clip7";
+  const auto like = vectors_of("clip7");
+  expect_exact_however_filtered(
+      query, [&](const ClipEmbedding& clip) { return dot(like.motion, clip.motion); });
+}
+
+TEST_F(MotionSearchTest, FindsByBodyParts) {
+  SearchQuery query;
+  query.like_clip = "clip7";
+  query.parts = {"arms", "left_leg"};
+  const auto like = vectors_of("clip7");
+  const auto width = static_cast<size_t>(retriever_->part_width());
+  const auto parts = [&](const ClipEmbedding& clip) {
+    double sum = 0;
+    for (const size_t part : {0u, 4u, 5u}) {
+      sum += dot(std::span(like.parts).subspan(part * width, width),
+                 std::span(clip.parts).subspan(part * width, width));
+    }
+    return sum / 3;
+  };
+  expect_exact_however_filtered(query, parts);
+  query.text = "a person waves";
+  query.text_weight = 3;
+  const auto text = encode(query.text);
+  expect_exact_however_filtered(query, [&](const ClipEmbedding& clip) {
+    return 0.75 * dot(text, clip.motion) + 0.25 * parts(clip);
+  });
+}
+
+TEST_F(MotionSearchTest, FindsBySentenceAndMotion) {
+  SearchQuery query;
+  query.text = "a person waves";
+  query.like_clip = "clip20";
+  query.text_weight = 0.5;
+  query.motion_weight = 1.5;
+  const auto text = encode(query.text);
+  const auto like = vectors_of("clip20");
+  expect_exact_however_filtered(query, [&](const ClipEmbedding& clip) {
+    return 0.25 * dot(text, clip.motion) + 0.75 * dot(like.motion, clip.motion);
+  });
+}
+
+TEST_F(MotionSearchTest, CountsWhatItFolded) {
+  SearchQuery query;
+  query.text = "a person walks";
+  SearchAnswer answer = search_->search(query);
+  EXPECT_EQ(answer.candidates, kClips);
+  for (const MotionHit& hit : answer.hits) EXPECT_EQ(hit.folded, 2);
+  query.filter.splits = {"val"};  // i, i + 30, i + 60 are in one split
+  query.filter.min_seconds = 4;   // 60 of them at least 80 frames long
+  answer = search_->search(query);
+  ASSERT_FALSE(answer.hits.empty());
+  for (const MotionHit& hit : answer.hits) {
+    int expected = -1;
+    for (const Clip& clip : database_->clips()) {
+      expected += clip.group == hit.clip.group && clip.frames >= 80;
+    }
+    EXPECT_EQ(hit.folded, expected) << hit.clip.name;
+  }
+  query.grouped = false;
+  for (const MotionHit& hit : search_->search(query).hits) EXPECT_EQ(hit.folded, 0);
+}
+
+TEST_F(MotionSearchTest, LimitsRefuseAndSayWhat) {
+  SearchQuery query;
+  query.text = "a person walks";
+  query.k = 30;
+  const SearchAnswer all = search_->search(query);
+  ASSERT_EQ(all.hits.size(), 30u);
+  query.least_similarity = all.hits[4].similarity;  // the limit itself passes
+  SearchAnswer some = search_->search(query);
+  ASSERT_EQ(some.hits.size(), 5u);
+  ASSERT_TRUE(some.refused);
+  EXPECT_EQ(some.refused->clip.name, all.hits[5].clip.name);
+  query.least_similarity = 0.99;
+  some = search_->search(query);
+  EXPECT_TRUE(some.hits.empty());
+  ASSERT_TRUE(some.refused);
+  EXPECT_EQ(some.refused->clip.name, all.hits[0].clip.name);
+  EXPECT_EQ(some.candidates, kClips);
+  query.filter.min_seconds = 100;
+  some = search_->search(query);
+  EXPECT_EQ(some.candidates, 0);
+  EXPECT_FALSE(some.refused);
+}
+
+TEST_F(MotionSearchTest, CaptionsAreThoseOfNearClipsByTheirOwnCosine) {
+  SearchQuery query;
+  query.like_clip = "clip3";
+  query.filter.splits = {"train"};  // 45 clips, all are near enough
+  query.k = 100;
+  const auto motion = vectors_of("clip3").motion;
+  std::map<std::string, double> expected;
+  for (const Clip& clip : database_->clips()) {
+    if (clip.split != "train" || clip.group == "test/group3") continue;
+    for (const std::string& caption : clip.captions)
+      expected[caption] = dot(encode(caption), motion);
+  }
+  const auto hits = search_->captions_for(query);
+  ASSERT_EQ(hits.size(), expected.size());
+  for (size_t i = 0; i < hits.size(); ++i) {
+    EXPECT_NEAR(hits[i].similarity, expected.at(hits[i].caption), 1e-4);
+    EXPECT_EQ(hits[i].rank, static_cast<int>(i) + 1);
+    EXPECT_GE(hits[i > 0 ? i - 1 : 0].similarity, hits[i].similarity);
+    EXPECT_EQ(hits[i].clips.size(), hits[i].caption == "shared words." ? 45u : 1u);
+  }
+  query.k = 2;
+  EXPECT_EQ(search_->captions_for(query).size(), 2u);
+  query.text = "a sentence";
+  EXPECT_NE(error_of([&] { search_->captions_for(query); }), "");
+}
+
+TEST_F(MotionSearchTest, SeesWhatOthersHaveChanged) {
+  const std::string path = *folder_ / "changing.sqlite";
+  Database database(path, OpenMode::create);
+  add_test_clip(database, named_clip("old"));
+  add_test_clip(database, named_clip("older"));
+  store_random_vectors(database, 1);
+  VectorIndex::build(database, retriever_->hash()).save(path + ".index");
+  const MotionSearch search(kModel, path);
+  SearchQuery query;
+  query.like_clip = "old";
+  query.parts = {"arms"};
+  EXPECT_EQ(search.search(query).hits.size(), 1u);
+  query.parts.clear();
+  EXPECT_EQ(search.captions_for(query).size(), 2u);
+  add_test_clip(database, named_clip("new"));
+  store_random_vectors(database, 2);
+  EXPECT_EQ(search.search(query).hits.size(), 2u);
+  query.like_clip = "new";
+  query.parts = {"arms"};
+  EXPECT_EQ(search.search(query).hits.size(), 2u);
+  query.like_clip = "nobody";
+  EXPECT_NE(error_of([&] { search.search(query); }).find("'nobody'"), std::string::npos);
+}
+
+TEST_F(MotionSearchTest, AnswersSeveralThreadsAlike) {
+  SearchQuery query;
+  query.text = "a person kicks";
+  query.like_clip = "clip11";
+  query.parts = {"legs"};
+  const SearchAnswer expected = search_->search(query);
+  std::vector<int> failures(4, 0);
+  {
+    std::vector<std::jthread> threads;
+    for (size_t t = 0; t < failures.size(); ++t) {
+      threads.emplace_back([&, t] {
+        for (int round = 0; round < 5; ++round) {
+          const SearchAnswer answer = search_->search(query);
+          for (size_t i = 0; i < expected.hits.size(); ++i) {
+            failures[t] += answer.hits.at(i).clip.id != expected.hits[i].clip.id;
+          }
+        }
+      });
+    }
+  }
+  EXPECT_EQ(failures, std::vector<int>(4, 0));
+}
+
+TEST_F(MotionSearchTest, AStoredMotionFindsItselfInTheShippedDatabase) {
+  const MotionSearch shipped(kModel, kModels + "procedural.sqlite");
+  const Database database(kModels + "procedural.sqlite", OpenMode::read_only);
+  SearchQuery query;
+  query.k = 1;
+  for (const char* name : {"procedural-walk-circle-left-000", "procedural-walk-slow-000"}) {
+    query.motion = database.motion(*database.find_name(name));
+    for (const std::vector<std::string>& parts :
+         {std::vector<std::string>{}, std::vector<std::string>{"arms"}}) {
+      query.parts = parts;
+      const SearchAnswer answer = shipped.search(query);
+      EXPECT_EQ(answer.hits.at(0).clip.name, name);
+      EXPECT_NEAR(answer.hits[0].similarity, 1, 1e-3);
+    }
+  }
+  query.parts.clear();
+  EXPECT_FALSE(shipped.captions_for(query).empty());
+  query.motion = walking_motion(201, 1);
+  EXPECT_NE(error_of([&] { shipped.search(query); }).find("10.05 s"), std::string::npos);
+  query.motion = walking_motion(3, 1);
+  EXPECT_NE(error_of([&] { shipped.search(query); }), "");
+}
+
+}  // namespace
+}  // namespace remomask

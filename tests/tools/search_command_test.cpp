@@ -1,0 +1,93 @@
+// The command `search` on the shipped model and database.
+#include <gtest/gtest.h>
+
+#include "base/file.h"
+#include "tests/tools/program_runner.h"
+
+namespace remomask {
+namespace {
+
+const std::string kStored = "procedural-walk-circle-left-000";
+
+std::string failure(const std::vector<std::string>& arguments) {
+  const ProgramResult result = run_program(arguments);
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  EXPECT_EQ(result.output, "");
+  return result.errors;
+}
+
+TEST(SearchCommand, FindsByMotionPartsAndBoth) {
+  const auto alike = run_json({"search", "--like-clip", kStored, "-k", "3"});
+  ASSERT_EQ(alike["hits"].size(), 3u);
+  EXPECT_EQ(alike["like_clip"], kStored);
+  EXPECT_EQ(alike["hits"][0]["clip"], "procedural-walk-circle-left-003");
+  for (const auto& hit : alike["hits"]) {
+    EXPECT_NE(hit["clip"], kStored);
+    EXPECT_EQ(hit["folded"], 0);
+  }
+  const auto arms = run_json({"search", "--like-clip", kStored, "--parts", "arms", "-k", "359"});
+  EXPECT_EQ(arms["hits"].size(), 359u);
+  const auto both = run_json({"search", "a person jumps", "--like-clip", kStored, "--text-weight",
+                              "1", "--motion-weight", "0", "-k", "1"});
+  EXPECT_NE(both["hits"][0]["clip"].get<std::string>().find("jump"), std::string::npos);
+}
+
+TEST(SearchCommand, ReadsMotionFilesAndPiecesOfThem) {
+  const ScratchFolder scratch;
+  run_json({"generate", "a person walks forward", "--seconds", "6", "--seed", "2", "-o",
+            scratch.path("walk.npy")});
+  const auto whole = run_json({"search", "--like", scratch.path("walk.npy"), "-k", "1"});
+  EXPECT_NE(whole["hits"][0]["clip"].get<std::string>().find("walk"), std::string::npos);
+  const auto piece = run_json(
+      {"search", "--like", scratch.path("walk.npy"), "--from", "1", "--to", "3", "-k", "1"});
+  EXPECT_NE(piece["hits"][0]["similarity"], whole["hits"][0]["similarity"]);
+  const auto captions =
+      run_json({"search", "--like", scratch.path("walk.npy"), "--captions", "-k", "4"});
+  ASSERT_EQ(captions["captions"].size(), 4u);
+  EXPECT_FALSE(captions["captions"][0]["clips"].empty());
+  EXPECT_NE(failure({"search", "--like", scratch.path("walk.npy"), "--from", "7"}).find("7"),
+            std::string::npos);
+}
+
+TEST(SearchCommand, SaysWhenNothingFits) {
+  const ProgramResult none = run_program({"search", "a walk", "--least-similarity", "1"});
+  EXPECT_EQ(none.exit_code, 0);
+  EXPECT_NE(none.output.find("nothing fits"), std::string::npos) << none.output;
+  const auto json = run_json({"search", "a walk", "--least-similarity", "1"});
+  EXPECT_TRUE(json["hits"].empty());
+  EXPECT_LT(json["refused"]["similarity"], 1);
+  const ProgramResult filtered = run_program({"search", "a walk", "--min-seconds", "500"});
+  EXPECT_EQ(filtered.exit_code, 0);
+  EXPECT_NE(filtered.output.find("no clip passes the filters"), std::string::npos);
+}
+
+TEST(SearchCommand, RefusesBadQueriesClearly) {
+  const ScratchFolder scratch;
+  const std::string stranger = scratch.path("stranger.bvh");
+  write_file_atomically(stranger,
+                        "HIERARCHY\nROOT snake\n{\n  OFFSET 0 0 0\n  CHANNELS 6 Xposition "
+                        "Yposition Zposition Zrotation Xrotation Yrotation\n  End Site\n  {\n    "
+                        "OFFSET 0 1 0\n  }\n}\nMOTION\nFrames: 2\nFrame Time: 0.05\n0 0 0 0 0 0\n0 "
+                        "0 0 0 0 0\n");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"search"}, "nothing to look for"},
+      {{"search", ""}, "nothing to look for"},
+      {{"search", " . "}, "empty"},
+      {{"search", "walk", "--parts", "arms"}, "--like"},
+      {{"search", "--like-clip", kStored, "--parts", "tail"}, "'tail'"},
+      {{"search", "--like-clip", "nobody"}, "'nobody'"},
+      {{"search", "--like", stranger}, "stranger.bvh"},
+      {{"search", "--like", scratch.path("missing.bvh")}, "missing.bvh"},
+      {{"search", "walk", "--like-clip", kStored, "--text-weight", "0", "--motion-weight", "0"},
+       "both zero"},
+      {{"search", "walk", "--from", "1"}, "--like"},
+      {{"search", "walk", "--captions"}, "captions are looked up for"},
+  };
+  for (const auto& [arguments, expected] : cases) {
+    const std::string message = failure(arguments);
+    EXPECT_NE(message.find(expected), std::string::npos) << expected << " in " << message;
+  }
+}
+
+}  // namespace
+}  // namespace remomask
