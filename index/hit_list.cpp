@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <unordered_map>
 
 #include "base/error.h"
+#include "index/fusion.h"
 
 namespace remomask {
 
@@ -64,6 +67,9 @@ class HitList {
   }
 
   SearchAnswer finish() {
+    answer_.unsearched =
+        static_cast<int64_t>(scene_.state->clips.size()) - scene_.state->index.count();
+    answer_.boosted = scene_.candidates(scene_.boosted);
     answer_.candidates =
         scene_.allowed ? scene_.candidates(*scene_.allowed) : scene_.state->index.count();
     return std::move(answer_);
@@ -76,12 +82,39 @@ class HitList {
   SearchAnswer answer_;
 };
 
+/// All clips by similarity, and those with boost words by these, as one ranking.
+std::vector<VectorHit> join_rankings(const std::vector<VectorHit>& nearest,
+                                     const SearchScene& scene, double boost_weight) {
+  Ranking by_vector, by_words;
+  by_words.weight = boost_weight;
+  std::unordered_map<int64_t, float> similarities;
+  for (const VectorHit& hit : nearest) {
+    by_vector.ids.push_back(hit.clip_id);
+    similarities[hit.clip_id] = hit.similarity;
+  }
+  std::copy_if(scene.boosted.begin(), scene.boosted.end(), std::back_inserter(by_words.ids),
+               [&](int64_t id) { return similarities.contains(id); });
+  std::vector<VectorHit> joined;
+  for (const FusedId& fused : reciprocal_rank_fusion({by_vector, by_words})) {
+    joined.push_back({fused.id, similarities.at(fused.id)});
+  }
+  return joined;
+}
+
 }  // namespace
 
 SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
                           const LinearQuery& vectors) {
   const NearestClips nearest(scene, vectors);
   const int64_t count = scene.state->index.count();
+  if (!scene.boosted.empty()) {
+    HitList list(scene, query);
+    for (const VectorHit& hit : join_rankings(nearest.best(count), scene, query.boost_weight)) {
+      if (list.full()) break;
+      list.add(hit);
+    }
+    return list.finish();
+  }
   // Grouping leaves gaps: look further, until there are enough or no more.
   for (int64_t wanted = std::min<int64_t>(query.k, count);; wanted = std::min(4 * wanted, count)) {
     HitList list(scene, query);

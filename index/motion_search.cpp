@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <mutex>
 #include <numeric>
+#include <sstream>
 #include <unordered_map>
 
 #include "base/error.h"
+#include "db/captions_index.h"
 #include "index/filter.h"
 #include "index/hit_list.h"
 #include "index/search_scene.h"
+#include "index/sentence.h"
 #include "index/vector_index.h"
 #include "motion/features.h"
 #include "nn/model_file.h"
@@ -36,10 +39,14 @@ float cosine(const std::vector<float>& left, const std::vector<float>& right) {
 
 enum class Need { index, bodies, captions };
 
+Error no_word(const std::string& text) {
+  return Error("'" + text + "' holds no word; write letters or digits");
+}
+
 }  // namespace
 
 struct MotionSearch::Impl {
-  std::string database_path, index_path;
+  std::string index_path;
   Retriever retriever;
   mutable std::mutex mutex;  // of all that follows
   mutable Database database;
@@ -47,10 +54,10 @@ struct MotionSearch::Impl {
 
   Impl(const std::string& model_path, const std::string& database_file,
        const std::string& index_file)
-      : database_path(database_file),
-        index_path(index_file.empty() ? default_index_path(database_file) : index_file),
+      : index_path(index_file.empty() ? default_index_path(database_file) : index_file),
         retriever(load_stage(model_path, "retriever")),
         database(database_file, OpenMode::read_only) {
+    const ReadSnapshot snapshot(database);
     read_state(VectorIndex::load(index_path, database, retriever.hash()));
   }
 
@@ -63,15 +70,39 @@ struct MotionSearch::Impl {
     read_state(VectorIndex::build(database, retriever.hash()));
   }
 
-  std::optional<std::vector<int64_t>> allowed_clips(const SearchQuery& query) const {
+  std::optional<std::vector<int64_t>> allowed_clips(const SearchQuery& query,
+                                                    const Sentence& sentence) const {
     ClipFilter filter = query.filter;
+    for (const std::string& word : sentence.unwanted) {
+      const std::string quoted = quote_caption_words(word);
+      if (quoted.empty()) throw no_word(word);
+      for (const CaptionMatch& match : database.match_captions(quoted)) {
+        filter.excluded_clips.insert(match.clip_id);
+      }
+    }
     if (!query.like_clip.empty()) {
       const Clip clip = database.clip(stored_clip(query.like_clip));
       filter.excluded_clips.insert(clip.id);
       if (query.grouped) filter.excluded_groups.insert(clip.group);
     }
-    if (filter.empty()) return std::nullopt;
+    // Ranks need all clips in their exact order: no approximate index for boosts.
+    if (filter.empty() && query.boost_words.empty()) return std::nullopt;
     return matching_clips(state->clips, filter);
+  }
+
+  /// The clips with any of the words, best first.
+  std::vector<int64_t> boosted_clips(const std::string& boost_words) const {
+    std::vector<int64_t> ids;
+    if (boost_words.empty()) return ids;
+    std::istringstream words(boost_words);
+    std::string any;
+    for (std::string word; words >> word;) {
+      const std::string quoted = quote_caption_words(word);
+      if (!quoted.empty()) any += (any.empty() ? "" : " OR ") + quoted;
+    }
+    if (any.empty()) throw no_word(boost_words);
+    for (const CaptionMatch& match : database.match_captions(any)) ids.push_back(match.clip_id);
+    return ids;
   }
 
   int64_t stored_clip(const std::string& name) const {
@@ -79,8 +110,9 @@ struct MotionSearch::Impl {
     throw Error(database.path() + ": there is no clip '" + name + "'");
   }
 
-  SearchScene scene(const SearchQuery& query, Need need) const {
+  SearchScene scene(const SearchQuery& query, const Sentence& sentence, Need need) const {
     const std::scoped_lock lock(mutex);
+    const ReadSnapshot snapshot(database);
     refresh();
     SearchScene scene;
     if (need == Need::bodies && !state->bodies) {
@@ -94,7 +126,8 @@ struct MotionSearch::Impl {
     scene.state = state;
     scene.bodies = state->bodies;
     scene.captions = state->captions;
-    scene.allowed = allowed_clips(query);
+    scene.allowed = allowed_clips(query, sentence);
+    scene.boosted = boosted_clips(query.boost_words);
     if (!query.like_clip.empty()) {
       scene.like = database.embedding(retriever.hash(), stored_clip(query.like_clip));
       if (!scene.like) {
@@ -124,9 +157,10 @@ struct MotionSearch::Impl {
     return {0, numbers(encoding.global[0]), numbers(encoding.parts[0]), {}};
   }
 
-  QueryVectors vectors(const SearchQuery& query, const SearchScene& scene) const {
+  QueryVectors vectors(const SearchQuery& query, const Sentence& sentence,
+                       const SearchScene& scene) const {
     QueryVectors result;
-    if (!query.text.empty()) result.text = text_vector(query.text);
+    if (!sentence.text.empty()) result.text = text_vector(sentence.text);
     if (query.motion || scene.like) {
       ClipEmbedding motion = scene.like ? *scene.like : motion_vectors(*query.motion);
       result.motion = std::move(motion.motion);
@@ -146,17 +180,18 @@ MotionSearch& MotionSearch::operator=(MotionSearch&&) noexcept = default;
 SearchAnswer MotionSearch::search(const SearchQuery& query) const {
   check_query(query);
   const Need need = query.parts.empty() ? Need::index : Need::bodies;
-  const SearchScene scene = impl_->scene(query, need);
-  return collect_hits(scene, query, linear_query(impl_->vectors(query, scene), query));
+  const Sentence sentence = parse_sentence(query.text);
+  const SearchScene scene = impl_->scene(query, sentence, need);
+  return collect_hits(scene, query, linear_query(impl_->vectors(query, sentence, scene), query));
 }
 
 std::vector<CaptionHit> MotionSearch::captions_for(const SearchQuery& query) const {
   check_query(query);
-  if (!query.text.empty() || !query.parts.empty()) {
-    throw Error("captions are looked up for a whole motion alone; leave sentence and parts away");
+  if (!query.text.empty() || !query.parts.empty() || !query.boost_words.empty()) {
+    throw Error("captions are looked up for a motion alone; leave sentence, words and parts away");
   }
-  const SearchScene scene = impl_->scene(query, Need::captions);
-  const std::vector<float> motion = impl_->vectors(query, scene).motion;
+  const SearchScene scene = impl_->scene(query, {}, Need::captions);
+  const std::vector<float> motion = impl_->vectors(query, {}, scene).motion;
   const auto near = scene.captions->nearest({motion, {}}, kCaptionClips, scene.limit());
   std::vector<CaptionHit> hits;
   std::unordered_map<std::string, size_t> places;

@@ -24,8 +24,10 @@ class MotionSearch {
   MotionSearch& operator=(MotionSearch&&) noexcept;
 
   /// The best clips. With `like_clip`, that clip is left out, and its group too
-  /// where hits are grouped. Exact, but for approximate index types, which only
-  /// serve queries without filter and body parts. Throws Error for bad queries.
+  /// where hits are grouped; unwanted words leave out clips one of whose captions
+  /// has such a word (by its stem). Exact, but for approximate index types, which
+  /// only serve queries without filter, words and body parts. Throws Error for
+  /// bad queries.
   SearchAnswer search(const SearchQuery& query) const;
 
   /// Motion to text: the captions of the 50 clips whose mean text vectors are

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "index/sentence.h"
 #include "motion/body_parts.h"
 #include "motion/canonical.h"
 
@@ -57,17 +58,23 @@ std::vector<int> parse_body_parts(const std::vector<std::string>& names) {
 
 void check_query(const SearchQuery& query) {
   const bool moving = query.motion || !query.like_clip.empty();
+  const Sentence sentence = parse_sentence(query.text);
+  const bool worded = !sentence.text.empty();
   if (query.k < 1) throw Error("a search returns at least one clip; ask for k of 1 or more");
   if (query.motion && !query.like_clip.empty()) {
     throw Error("the motion to compare with is a file or a stored clip, not both");
   }
-  if (!moving && query.text.empty()) {
-    throw Error("there is nothing to look for: the sentence is empty and no motion is given");
+  if (!moving && !worded) {
+    throw Error(sentence.unwanted.empty()
+                    ? "there is nothing to look for: the sentence is empty and no motion is given"
+                    : "the sentence says only what is not wanted; say what is, or give a motion");
   }
   if (!moving && !query.parts.empty()) {
     throw Error("body parts are compared with those of a motion; give one (--like, --like-clip)");
   }
-  if (!query.text.empty() && moving) {
+  parse_body_parts(query.parts);
+  check_weight(query.boost_weight, "words");
+  if (worded && moving) {
     check_weight(query.text_weight, "sentence");
     check_weight(query.motion_weight, "motion");
     if (query.text_weight == 0 && query.motion_weight == 0) {

@@ -19,6 +19,8 @@ struct MotionHit {
 struct SearchAnswer {
   std::vector<MotionHit> hits;       ///< best first
   int64_t candidates = 0;            ///< clips that pass the filter
+  int64_t boosted = 0;               ///< of them with one of the boost words
+  int64_t unsearched = 0;            ///< clips that the retriever has not embedded yet
   std::optional<MotionHit> refused;  ///< the most similar clip that a limit kept out
 };
 

@@ -29,6 +29,7 @@ struct SearchScene {
   std::shared_ptr<const SearchState> state;
   std::shared_ptr<const VectorTable> bodies, captions;
   std::optional<std::vector<int64_t>> allowed;  ///< ids that pass the filter, ascending
+  std::vector<int64_t> boosted;                 ///< have boost words, best first
   std::optional<ClipEmbedding> like;            ///< vectors of SearchQuery::like_clip
 
   const std::vector<int64_t>* limit() const { return allowed ? &*allowed : nullptr; }

@@ -21,7 +21,8 @@ struct SearchCommandOptions {
 
 void add_query_options(CLI::App& command, SearchCommandOptions& options) {
   SearchQuery& query = options.query;
-  command.add_option("text", query.text, "what to look for");
+  command.add_option("text", query.text,
+                     "what to look for; clips with a word that follows a minus are left out");
   command.add_option("--like", options.like_file, "a motion file (BVH, npy): more like this");
   command.add_option("--from", options.from, "of the motion file: from this second");
   command.add_option("--to", options.to, "of the motion file: up to this second");
@@ -35,6 +36,10 @@ void add_query_options(CLI::App& command, SearchCommandOptions& options) {
       .add_option("--text-weight", query.text_weight, "of the sentence, beside that of the motion")
       ->capture_default_str();
   command.add_option("--motion-weight", query.motion_weight, "of the motion")
+      ->capture_default_str();
+  command.add_option("--boost-words", query.boost_words,
+                     "clips with any of these words in a caption come up");
+  command.add_option("--boost-weight", query.boost_weight, "of the ranking by words")
       ->capture_default_str();
   command.add_flag("--captions", options.captions,
                    "list captions that describe the motion, instead of clips");
@@ -62,7 +67,13 @@ SearchQuery complete_query(const SearchCommandOptions& options) {
   } else if (options.from || options.to) {
     throw Error("--from and --to choose a piece of a motion file; name one with --like");
   }
+  check_query(query);  // before the model is loaded
   return query;
+}
+
+MotionSearch open_search(const SearchCommandOptions& options) {
+  return MotionSearch(options.files.model_path(), options.files.database_path(),
+                      options.files.index_path());
 }
 
 nlohmann::json query_json(const SearchCommandOptions& options) {
@@ -94,22 +105,32 @@ void print_answer(const SearchAnswer& answer, const SearchQuery& query) {
   }
 }
 
-void search_clips(const MotionSearch& search, const SearchCommandOptions& options,
-                  Program& program) {
+void search_clips(const SearchCommandOptions& options, Program& program) {
   const SearchQuery query = complete_query(options);
-  const SearchAnswer answer = search.search(query);
-  if (!program.json) return print_answer(answer, query);
+  const SearchAnswer answer = open_search(options).search(query);
+  if (!program.json) {
+    print_answer(answer, query);
+    if (answer.unsearched > 0) {
+      program.warn(
+          fmt::format("{} clips have no vectors yet and were not searched; run: remomask "
+                      "index {}",
+                      answer.unsearched, options.files.database_path()));
+    }
+    return;
+  }
   nlohmann::json document = query_json(options);
   document["candidates"] = answer.candidates;
+  document["clips_without_vectors"] = answer.unsearched;
+  if (!query.boost_words.empty()) document["boosted"] = answer.boosted;
   document["hits"] = nlohmann::json::array();
   for (const MotionHit& hit : answer.hits) document["hits"].push_back(motion_hit_json(hit));
   if (answer.refused) document["refused"] = motion_hit_json(*answer.refused);
   program.print_json(document);
 }
 
-void search_captions(const MotionSearch& search, const SearchCommandOptions& options,
-                     Program& program) {
-  const std::vector<CaptionHit> hits = search.captions_for(complete_query(options));
+void search_captions(const SearchCommandOptions& options, Program& program) {
+  const SearchQuery query = complete_query(options);
+  const std::vector<CaptionHit> hits = open_search(options).captions_for(query);
   if (!program.json) {
     if (hits.empty()) fmt::print("no clip with captions passes the filters\n");
     for (const CaptionHit& hit : hits) {
@@ -136,6 +157,7 @@ void register_search(CLI::App& app, Program& program) {
   auto options = std::make_shared<SearchCommandOptions>();
   CLI::App* command = add_command(app, "search", "find motions by meaning or by example",
                                   "remomask search \"someone waves\" -k 5 --min-seconds 2\n"
+                                  "  remomask search \"a person walks -backward\"\n"
                                   "  remomask search --like walk.bvh --parts arms\n"
                                   "  remomask search --like walk.bvh --captions");
   add_query_options(*command, *options);
@@ -144,10 +166,7 @@ void register_search(CLI::App& app, Program& program) {
   options->filter.add(*command);
   add_result_options(*command, *options);
   command->callback([options, &program] {
-    const MotionSearch search(options->files.model_path(), options->files.database_path(),
-                              options->files.index_path());
-    options->captions ? search_captions(search, *options, program)
-                      : search_clips(search, *options, program);
+    options->captions ? search_captions(*options, program) : search_clips(*options, program);
   });
 }
 

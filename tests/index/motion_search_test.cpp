@@ -48,7 +48,8 @@ class MotionSearchTest : public ::testing::Test {
         clip.group = "test/group" + std::to_string(i % 30);  // three clips each
         clip.split = i % 2 == 0 ? "train" : "val";
         clip.labels["side"] = i % 3 == 0 ? "left" : "right";
-        clip.captions = {"a person does number " + std::to_string(i) + ".", "shared words."};
+        clip.captions = {"a person does number " + std::to_string(i) + ".",
+                         i % 5 == 0 ? "someone waves both hands." : "shared words."};
         add_test_clip(database, clip, 20 + i);
       }
       store_random_vectors(database, 5);
@@ -262,10 +263,13 @@ TEST_F(MotionSearchTest, CaptionsAreThoseOfNearClipsByTheirOwnCosine) {
   query.k = 100;
   const auto motion = vectors_of("clip3").motion;
   std::map<std::string, double> expected;
+  std::map<std::string, size_t> owners;
   for (const Clip& clip : database_->clips()) {
     if (clip.split != "train" || clip.group == "test/group3") continue;
-    for (const std::string& caption : clip.captions)
+    for (const std::string& caption : clip.captions) {
       expected[caption] = dot(encode(caption), motion);
+      ++owners[caption];
+    }
   }
   const auto hits = search_->captions_for(query);
   ASSERT_EQ(hits.size(), expected.size());
@@ -273,12 +277,83 @@ TEST_F(MotionSearchTest, CaptionsAreThoseOfNearClipsByTheirOwnCosine) {
     EXPECT_NEAR(hits[i].similarity, expected.at(hits[i].caption), 1e-4);
     EXPECT_EQ(hits[i].rank, static_cast<int>(i) + 1);
     EXPECT_GE(hits[i > 0 ? i - 1 : 0].similarity, hits[i].similarity);
-    EXPECT_EQ(hits[i].clips.size(), hits[i].caption == "shared words." ? 45u : 1u);
+    EXPECT_EQ(hits[i].clips.size(), owners.at(hits[i].caption));
   }
   query.k = 2;
   EXPECT_EQ(search_->captions_for(query).size(), 2u);
   query.text = "a sentence";
   EXPECT_NE(error_of([&] { search_->captions_for(query); }), "");
+}
+
+TEST_F(MotionSearchTest, LeavesUnwantedWordsOutByTheirStem) {
+  SearchQuery query;
+  query.text = "a person -waving walks -nonsense";
+  query.k = 200;
+  const auto text = encode("a person walks");
+  const auto similarity = [&](const ClipEmbedding& clip) { return dot(text, clip.motion); };
+  const auto waves = [](const Clip& clip) {
+    return clip.captions[1] == "someone waves both hands.";
+  };
+  expect_exact(query, similarity, [&](const Clip& clip) { return !waves(clip); });
+  query.filter.splits = {"val"};
+  query.grouped = false;
+  expect_exact(query, similarity,
+               [&](const Clip& clip) { return !waves(clip) && clip.split == "val"; });
+  query.text = "-waving";
+  EXPECT_NE(error_of([&] { search_->search(query); }).find("not wanted"), std::string::npos);
+  query.like_clip = "clip1";  // and now there is something to look for
+  query.filter = {};
+  const auto like = vectors_of("clip1");
+  expect_exact(
+      query, [&](const ClipEmbedding& clip) { return dot(like.motion, clip.motion); },
+      [&](const Clip& clip) { return !waves(clip) && clip.name != "clip1"; });
+}
+
+TEST_F(MotionSearchTest, BoostsWordsByReciprocalRanks) {
+  SearchQuery query;
+  query.text = "a person walks";
+  query.boost_words = "hands, & number 7";
+  query.k = 20;
+  query.grouped = false;
+  const auto text = encode(query.text);
+  for (const double weight : {0.0, 0.3, 1.0, 5.0}) {
+    for (const bool filtered : {false, true}) {
+      query.boost_weight = weight;
+      query.filter = {};
+      if (filtered) query.filter.splits = {"train"};
+      SearchQuery plain = query;
+      plain.k = kClips;
+      const auto by_vector =
+          by_definition([&](const ClipEmbedding& clip) { return dot(text, clip.motion); }, plain,
+                        [&](const Clip& clip) { return !filtered || clip.split == "train"; });
+      std::map<std::string, double> scores;
+      for (size_t i = 0; i < by_vector.size(); ++i) {
+        scores[by_vector[i].first] = 1 / (61.0 + static_cast<double>(i));
+      }
+      double rank = 1;
+      for (const auto& match : database_->match_captions("\"hands,\" OR \"number\" OR \"7\"")) {
+        const auto found = scores.find(database_->clip(match.clip_id).name);
+        if (found != scores.end()) found->second += weight / (60 + rank++);
+      }
+      auto expected = by_vector;
+      std::stable_sort(expected.begin(), expected.end(), [&](const auto& a, const auto& b) {
+        return scores.at(a.first) > scores.at(b.first);
+      });
+      const SearchAnswer answer = search_->search(query);
+      ASSERT_EQ(answer.hits.size(), 20u);
+      EXPECT_EQ(answer.boosted, filtered ? 45 : 90);
+      for (size_t i = 0; i < 20; ++i) {
+        EXPECT_EQ(answer.hits[i].clip.name, expected[i].first) << weight << " " << i;
+        EXPECT_NEAR(answer.hits[i].similarity, expected[i].second, 1e-6);
+      }
+    }
+  }
+  query.boost_words = "& !";
+  EXPECT_NE(error_of([&] { search_->search(query); }).find("no word"), std::string::npos);
+  query.boost_words = "unheard";
+  EXPECT_EQ(search_->search(query).boosted, 0);
+  query.boost_weight = -1;
+  EXPECT_NE(error_of([&] { search_->search(query); }), "");
 }
 
 TEST_F(MotionSearchTest, SeesWhatOthersHaveChanged) {

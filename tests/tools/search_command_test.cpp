@@ -82,6 +82,8 @@ TEST(SearchCommand, RefusesBadQueriesClearly) {
        "both zero"},
       {{"search", "walk", "--from", "1"}, "--like"},
       {{"search", "walk", "--captions"}, "captions are looked up for"},
+      {{"search", "--", "-walk -run"}, "not wanted"},
+      {{"search", "walk", "--boost-words", "..."}, "no word"},
   };
   for (const auto& [arguments, expected] : cases) {
     const std::string message = failure(arguments);
