@@ -1,10 +1,14 @@
 #include "index/exact_scan.h"
 
 #include <cblas.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
 #include <limits>
+
+#include "base/error.h"
 
 namespace remomask {
 
@@ -18,9 +22,11 @@ namespace {
 // in one fixed order.
 
 constexpr int64_t kMostQueries = 256;              // of one matrix product
-constexpr int64_t kMostScores = int64_t{1} << 18;  // stay in the cache between product and choice
+constexpr int64_t kMostScores = int64_t{1} << 17;  // stay in the cache between product and choice
 constexpr int64_t kGatheredRows = 4096;            // stay in the cache between copy and product
 constexpr size_t kFirstLimit = 1024;
+constexpr int64_t kScoresAtOnce = 32;  // compared with the threshold by vector instructions
+constexpr double kNormTolerance = 1e-3;
 
 /// Twice the bound |fl(x.y) - x.y| <= width * u * |x||y| of any order of
 /// summation, for norms up to 1.01, and the final rounding.
@@ -43,13 +49,14 @@ class Candidates {
     limit_ = std::max(kFirstLimit, 2 * k_);
   }
 
-  /// `rows` null: the scores belong to rows first, first + 1, ...
-  void offer(const float* scores, int64_t count, int64_t first, const int64_t* rows) {
-    for (int64_t i = 0; i < count; ++i) {
-      if (scores[i] < threshold_) continue;
-      found_.push_back({rows ? rows[i] : first + i, scores[i]});
-      if (found_.size() >= limit_) prune();
+  /// Scores of the rows first, first + 1, ..., or, with `choice.rows`, of those
+  /// at the places first, first + 1, ... of that list.
+  void offer(const float* scores, int64_t count, int64_t first, const RowChoice& choice) {
+    int64_t i = 0;
+    for (; i + kScoresAtOnce <= count; i += kScoresAtOnce) {
+      if (any_reaches(scores + i)) take(scores + i, kScoresAtOnce, first + i, choice);
     }
+    take(scores + i, count - i, first + i, choice);
   }
 
   std::vector<RowScore> finish(const float* vectors, const float* query, int width) {
@@ -65,6 +72,22 @@ class Candidates {
   }
 
  private:
+  bool any_reaches(const float* scores) const {
+    int reached = 0;
+    for (int64_t i = 0; i < kScoresAtOnce; ++i) reached |= scores[i] >= threshold_;
+    return reached != 0;
+  }
+
+  void take(const float* scores, int64_t count, int64_t first, const RowChoice& choice) {
+    for (int64_t i = 0; i < count; ++i) {
+      if (scores[i] < threshold_) continue;
+      const int64_t row = choice.rows ? (*choice.rows)[static_cast<size_t>(first + i)] : first + i;
+      if (choice.skipped && (*choice.skipped)[static_cast<size_t>(row)]) continue;
+      found_.push_back({row, scores[i]});
+      if (found_.size() >= limit_) prune();
+    }
+  }
+
   void prune() {
     const auto last = found_.begin() + static_cast<std::ptrdiff_t>(k_) - 1;
     std::nth_element(found_.begin(), last, found_.end(), better_score);
@@ -96,9 +119,9 @@ void score_rows(const float* vectors, int64_t count, int width, const float* que
 }  // namespace
 
 std::vector<std::vector<RowScore>> exact_top_k(const float* vectors, int64_t count, int width,
-                                               const std::vector<int64_t>* rows,
-                                               const float* queries, int64_t query_count,
-                                               int64_t k) {
+                                               const RowChoice& choice, const float* queries,
+                                               int64_t query_count, int64_t k) {
+  const std::vector<int64_t>* rows = choice.rows;
   const int64_t available = rows ? static_cast<int64_t>(rows->size()) : count;
   k = std::min(k, available);
   std::vector<std::vector<RowScore>> results(static_cast<size_t>(query_count));
@@ -116,18 +139,18 @@ std::vector<std::vector<RowScore>> exact_top_k(const float* vectors, int64_t cou
                                        Candidates(k, score_margin(width)));
     for (int64_t first = 0; first < available; first += block) {
       const int64_t in_block = std::min(block, available - first);
-      const int64_t* block_rows = rows ? rows->data() + first : nullptr;
       const float* source = vectors + first * width;
       if (rows) {
         for (int64_t i = 0; i < in_block; ++i) {
-          std::copy_n(vectors + block_rows[i] * width, width, gathered.data() + i * width);
+          const int64_t row = (*rows)[static_cast<size_t>(first + i)];
+          std::copy_n(vectors + row * width, width, gathered.data() + i * width);
         }
         source = gathered.data();
       }
       score_rows(source, in_block, width, batch_queries, in_batch, scores.data());
       for (int64_t i = 0; i < in_batch; ++i) {
         candidates[static_cast<size_t>(i)].offer(scores.data() + i * in_block, in_block, first,
-                                                 block_rows);
+                                                 choice);
       }
     }
     for (int64_t i = 0; i < in_batch; ++i) {
@@ -136,6 +159,15 @@ std::vector<std::vector<RowScore>> exact_top_k(const float* vectors, int64_t cou
     }
   }
   return results;
+}
+
+void require_unit_length(const float* vector, int width, const std::string& subject) {
+  double square = 0;
+  for (int i = 0; i < width; ++i) square += static_cast<double>(vector[i]) * vector[i];
+  if (!(std::abs(std::sqrt(square) - 1) <= kNormTolerance)) {
+    throw Error(fmt::format("{} has length {:.4g} instead of 1; normalise it (L2)", subject,
+                            std::sqrt(square)));
+  }
 }
 
 }  // namespace remomask

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace remomask {
@@ -10,15 +11,22 @@ struct RowScore {
   float score = 0;  ///< inner product, summed in double and rounded once
 };
 
+/// Which rows a scan looks at.
+struct RowChoice {
+  const std::vector<int64_t>* rows = nullptr;     ///< only these, ascending; null: all
+  const std::vector<uint8_t>* skipped = nullptr;  ///< [count], 1: not this one; null: none
+};
+
 /// The `k` rows of highest inner product with each query, best first, equal
 /// scores in the order of their rows; fewer when there are fewer rows.
 /// `vectors` [count][width] and `queries` [query_count][width] have L2 norms of
-/// at most 1.01 and finite values. `rows` (ascending) limits the scan; null
-/// means all. The answer is exact: it does not depend on the number of threads,
-/// on what a query is batched with, or on the BLAS library.
+/// at most 1.01 and finite values. The answer is exact: it does not depend on the number
+/// of threads, on what a query is batched with, or on the BLAS library.
 std::vector<std::vector<RowScore>> exact_top_k(const float* vectors, int64_t count, int width,
-                                               const std::vector<int64_t>* rows,
-                                               const float* queries, int64_t query_count,
-                                               int64_t k);
+                                               const RowChoice& choice, const float* queries,
+                                               int64_t query_count, int64_t k);
+
+/// Throws Error that begins with `subject` when the L2 norm is not 1 within 0.001.
+void require_unit_length(const float* vector, int width, const std::string& subject);
 
 }  // namespace remomask

@@ -3,15 +3,16 @@
 #include <faiss/impl/io.h>
 #include <faiss/index_io.h>
 
-#include <bit>
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <fstream>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "index/described_file.h"
 
 namespace remomask {
 
@@ -19,21 +20,11 @@ namespace {
 
 constexpr std::string_view kIndexMagic = "RMMINDEX";
 constexpr int kIndexVersion = 1;
-constexpr const char* kRebuild = "run: remomask index DB";
+constexpr const char* kRebuild = "run: remomask index DB --rebuild";
 
-static_assert(std::endian::native == std::endian::little, "index files are little-endian");
-
-struct StringWriter : faiss::IOWriter {
-  std::string data;
-  size_t operator()(const void* source, size_t size, size_t count) override {
-    data.append(static_cast<const char*>(source), size * count);
-    return count;
-  }
-};
-
-struct StringReader : faiss::IOReader {
+struct ViewReader : faiss::IOReader {
   std::string_view rest;
-  explicit StringReader(std::string_view data) : rest(data) {}
+  explicit ViewReader(std::string_view data) : rest(data) {}
   size_t operator()(void* target, size_t size, size_t count) override {
     if (size == 0) return count;
     const size_t whole = std::min(count, rest.size() / size);
@@ -43,13 +34,19 @@ struct StringReader : faiss::IOReader {
   }
 };
 
-std::unique_ptr<faiss::Index> read_faiss(std::string_view data) {
-  StringReader reader(data);
-  return std::unique_ptr<faiss::Index>(faiss::read_index(&reader));
-}
+struct StreamWriter : faiss::IOWriter {
+  std::ofstream& stream;
+  explicit StreamWriter(std::ofstream& target) : stream(target) {}
+  size_t operator()(const void* source, size_t size, size_t count) override {
+    stream.write(static_cast<const char*>(source), static_cast<std::streamsize>(size * count));
+    return stream ? count : 0;
+  }
+};
 
 template <typename Wanted>
-std::unique_ptr<Wanted> take_as(std::unique_ptr<faiss::Index> index, const std::string& path) {
+std::unique_ptr<Wanted> read_faiss(std::string_view data, const std::string& path) {
+  ViewReader reader(data);
+  std::unique_ptr<faiss::Index> index(faiss::read_index(&reader));
   auto* wanted = dynamic_cast<Wanted*>(index.get());
   if (!wanted) {
     throw FileError(path, 0, std::string("holds another type of index; ") + kRebuild);
@@ -58,93 +55,168 @@ std::unique_ptr<Wanted> take_as(std::unique_ptr<faiss::Index> index, const std::
   return std::unique_ptr<Wanted>(wanted);
 }
 
+/// The parts of an index file, still in the mapped file.
 struct IndexParts {
-  nlohmann::json description;
-  std::string_view vectors;  ///< all bytes before the description
+  IndexHeader header;
+  std::string_view body, faiss, exact;
 };
 
+/// IDMap2 ends with its ids.
+std::string_view ids_at_end(std::string_view faiss, size_t count) {
+  return faiss.substr(faiss.size() - count * sizeof(int64_t));
+}
+
 IndexParts split_index_file(const std::string& path, std::string_view content) {
-  constexpr size_t kEnd = 8 + kIndexMagic.size();
-  if (content.size() < kEnd || !content.ends_with(kIndexMagic)) {
-    throw FileError(path, 0, std::string("is no index, or is cut off; ") + kRebuild);
+  const DescribedContent parts = split_described(path, content, kIndexMagic, kRebuild);
+  const nlohmann::json& description = parts.description;
+  if (description.at("version").get<int>() > kIndexVersion) {
+    throw FileError(path, 0, std::string("was made by a newer version of remomask; ") + kRebuild);
   }
-  uint64_t length = 0;
-  std::memcpy(&length, content.data() + content.size() - kEnd, 8);
-  if (length > content.size() - kEnd) {
-    throw FileError(path, 0, std::string("the index is damaged; ") + kRebuild);
-  }
-  const size_t start = content.size() - kEnd - static_cast<size_t>(length);
-  IndexParts parts{nlohmann::json::parse(content.substr(start, length), nullptr, false),
-                   content.substr(0, start)};
-  if (parts.description.is_discarded()) {
-    throw FileError(path, 0, std::string("the index is damaged; ") + kRebuild);
-  }
-  return parts;
-}
-
-}  // namespace
-
-void write_index_file(const std::string& path, const IndexStamp& stamp, const std::string& factory,
-                      const faiss::IndexIDMap2& index, const faiss::IndexFlat* exact) {
-  StringWriter writer;
-  faiss::write_index(&index, &writer);
-  const size_t faiss_bytes = writer.data.size();
-  if (exact) faiss::write_index(exact, &writer);
-  const nlohmann::json description = {{"format", "remomask index"},
-                                      {"version", kIndexVersion},
-                                      {"database", stamp.database_uuid},
-                                      {"generation", stamp.generation},
-                                      {"retriever", stamp.retriever_hash},
-                                      {"factory", factory},
-                                      {"count", index.ntotal},
-                                      {"width", index.d},
-                                      {"faiss_bytes", faiss_bytes},
-                                      {"exact_bytes", writer.data.size() - faiss_bytes},
-                                      {"checksum", content_hash(writer.data)}};
-  const std::string text = description.dump();
-  const uint64_t length = text.size();
-  writer.data += text;
-  writer.data.append(reinterpret_cast<const char*>(&length), sizeof length);
-  writer.data += kIndexMagic;
-  write_file_atomically(path, writer.data);
-}
-
-IndexFile read_index_file(const std::string& path) {
-  if (!std::filesystem::exists(path)) {
-    throw FileError(path, 0, std::string("there is no index; ") + kRebuild);
-  }
-  const std::string content = read_file(path);
-  const IndexParts parts = split_index_file(path, content);
-  IndexFile file;
-  try {
-    const nlohmann::json& description = parts.description;
-    if (description.at("version").get<int>() > kIndexVersion) {
-      throw FileError(path, 0, std::string("was made by a newer version of remomask; ") + kRebuild);
-    }
-    const auto faiss_bytes = description.at("faiss_bytes").get<size_t>();
-    const auto exact_bytes = description.at("exact_bytes").get<size_t>();
-    if (faiss_bytes > parts.vectors.size() || exact_bytes != parts.vectors.size() - faiss_bytes ||
-        description.at("checksum").get<std::string>() != content_hash(parts.vectors)) {
-      throw FileError(path, 0, std::string("the index is damaged; ") + kRebuild);
-    }
-    file.stamp = {description.at("database").get<std::string>(),
+  IndexParts result;
+  IndexHeader& header = result.header;
+  header.stamp = {description.at("database").get<std::string>(),
                   description.at("generation").get<int64_t>(),
                   description.at("retriever").get<std::string>()};
-    file.factory = description.at("factory").get<std::string>();
-    file.index =
-        take_as<faiss::IndexIDMap2>(read_faiss(parts.vectors.substr(0, faiss_bytes)), path);
-    if (exact_bytes > 0) {
-      file.exact = take_as<faiss::IndexFlat>(read_faiss(parts.vectors.substr(faiss_bytes)), path);
-    } else if (!dynamic_cast<faiss::IndexFlat*>(file.index->index)) {
-      throw FileError(path, 0, std::string("the index has no exact vectors; ") + kRebuild);
-    }
+  header.type.factory = description.at("factory").get<std::string>();
+  // Files of the first release do not say these.
+  header.type.requested = description.value("requested", header.type.factory);
+  header.type.search_parameters = description.value("search_parameters", "");
+  if (description.contains("recall_at_10")) header.type.recall = description.at("recall_at_10");
+  header.width = description.at("width").get<int>();
+  header.checksum = description.at("checksum").get<std::string>();
+
+  const auto faiss_bytes = description.at("faiss_bytes").get<size_t>();
+  const auto exact_bytes = description.at("exact_bytes").get<size_t>();
+  const auto count = description.at("count").get<size_t>();
+  const FileError damaged(path, 0, std::string("the index is damaged; ") + kRebuild);
+  if (faiss_bytes > parts.body.size() || exact_bytes != parts.body.size() - faiss_bytes ||
+      count > faiss_bytes / sizeof(int64_t)) {
+    throw damaged;
+  }
+  result.body = parts.body;
+  result.faiss = parts.body.substr(0, faiss_bytes);
+  result.exact = parts.body.substr(faiss_bytes);
+  const std::string_view ids = ids_at_end(result.faiss, count);
+  const bool intact = description.contains("ids_checksum")
+                          ? description.at("ids_checksum") == content_hash(ids)
+                          : header.checksum == content_hash(parts.body);
+  if (!intact) throw damaged;
+  header.ids.resize(count);
+  if (count > 0) std::memcpy(header.ids.data(), ids.data(), ids.size());
+  if (!std::is_sorted(header.ids.begin(), header.ids.end())) throw damaged;
+  return result;
+}
+
+/// What FAISS and the JSON library throw becomes a FileError.
+template <typename Read>
+auto reading(const std::string& path, const Read& read) {
+  if (!std::filesystem::exists(path)) {
+    throw FileError(path, 0, "there is no index; run: remomask index DB");
+  }
+  try {
+    return read();
   } catch (const Error&) {
     throw;
-  } catch (const std::exception& error) {  // of FAISS and of the JSON library
+  } catch (const std::exception& error) {
     throw FileError(path, 0,
                     std::string("the index is damaged (") + error.what() + "); " + kRebuild);
   }
-  return file;
+}
+
+/// A temporary file that is written piece by piece.
+class PieceWriter {
+ public:
+  explicit PieceWriter(const std::string& path)
+      : path_(path), stream_(path, std::ios::binary | std::ios::trunc) {}
+
+  size_t add(const faiss::Index& index) {
+    StreamWriter writer(stream_);
+    try {
+      faiss::write_index(&index, &writer);
+    } catch (const std::exception&) {  // FAISS lacks the reason: the stream has it
+      stream_.setstate(std::ios::failbit);
+    }
+    return flush();
+  }
+  size_t add(std::string_view text) {
+    stream_ << text;
+    return flush();
+  }
+
+ private:
+  /// Size of the file so far.
+  size_t flush() {
+    stream_.flush();
+    if (!stream_) {
+      throw FileError(path_, 0, "cannot write (is the disk full?); the old index was kept");
+    }
+    return static_cast<size_t>(stream_.tellp());
+  }
+
+  std::string path_;
+  std::ofstream stream_;
+};
+
+}  // namespace
+
+std::string write_index_file(const std::string& path, const IndexStamp& stamp,
+                             const IndexType& type, const faiss::IndexIDMap2& index,
+                             const faiss::IndexFlat* exact) {
+  AtomicFile file(path);
+  PieceWriter writer(file.temporary_path());
+  const size_t faiss_bytes = writer.add(index);
+  const size_t body_bytes = exact ? writer.add(*exact) : faiss_bytes;
+  nlohmann::json description = {{"format", "remomask index"},
+                                {"version", kIndexVersion},
+                                {"database", stamp.database_uuid},
+                                {"generation", stamp.generation},
+                                {"retriever", stamp.retriever_hash},
+                                {"requested", type.requested},
+                                {"factory", type.factory},
+                                {"search_parameters", type.search_parameters},
+                                {"count", index.ntotal},
+                                {"width", index.d},
+                                {"faiss_bytes", faiss_bytes},
+                                {"exact_bytes", body_bytes - faiss_bytes}};
+  if (type.recall) description["recall_at_10"] = *type.recall;
+  std::string checksum;
+  {
+    const MappedFile written(file.temporary_path());
+    const auto count = static_cast<size_t>(index.ntotal);
+    checksum = content_hash(written.content());
+    description["checksum"] = checksum;
+    description["ids_checksum"] =
+        content_hash(ids_at_end(written.content().substr(0, faiss_bytes), count));
+  }
+  writer.add(describe(std::move(description), kIndexMagic));
+  file.commit();
+  return checksum;
+}
+
+IndexFile read_index_file(const std::string& path) {
+  return reading(path, [&] {
+    const MappedFile mapped(path);
+    IndexParts parts = split_index_file(path, mapped.content());
+    if (content_hash(parts.body) != parts.header.checksum) {
+      throw FileError(path, 0, std::string("the index is damaged; ") + kRebuild);
+    }
+    IndexFile file;
+    file.index = read_faiss<faiss::IndexIDMap2>(parts.faiss, path);
+    if (!parts.exact.empty()) {
+      file.exact = read_faiss<faiss::IndexFlat>(parts.exact, path);
+    } else if (!dynamic_cast<faiss::IndexFlat*>(file.index->index)) {
+      throw FileError(path, 0, std::string("the index has no exact vectors; ") + kRebuild);
+    }
+    file.header = std::move(parts.header);
+    return file;
+  });
+}
+
+IndexHeader read_index_header(const std::string& path) {
+  return reading(path, [&] {
+    const MappedFile mapped(path);
+    return split_index_file(path, mapped.content()).header;
+  });
 }
 
 }  // namespace remomask

@@ -58,16 +58,17 @@ struct MotionSearch::Impl {
         retriever(load_stage(model_path, "retriever")),
         database(database_file, OpenMode::read_only) {
     const ReadSnapshot snapshot(database);
-    read_state(VectorIndex::load(index_path, database, retriever.hash()));
+    read_state();
   }
 
-  void read_state(VectorIndex index) const {
-    state = std::make_shared<SearchState>(std::move(index), database.clips());
+  void read_state() const {
+    state = std::make_shared<SearchState>(
+        VectorIndex::open(index_path, database, retriever.hash()), database.clips());
   }
 
   void refresh() const {
-    if (state->index.stamp().generation == database.generation()) return;
-    read_state(VectorIndex::build(database, retriever.hash()));
+    // A new one: other searches may still be reading the old one.
+    if (state->index.stamp().generation != database.generation()) read_state();
   }
 
   std::optional<std::vector<int64_t>> allowed_clips(const SearchQuery& query,

@@ -28,11 +28,17 @@ struct SearchOptions {
 };
 
 /// The best clips for each query (L2-normalised, [queries][index.width()]), one
-/// list a query, best first; fewer than k when no more are there. Throws Error
-/// when the index is not of the database's present state.
+/// list a query, best first; fewer than k when no more are there. Reads one
+/// state of the database; clips that it has gained since the index followed it
+/// are not found, those that it has lost are left out. Throws Error when the
+/// index belongs to another database.
 std::vector<std::vector<SearchHit>> search_database(const Database& database,
                                                     const VectorIndex& index, const float* queries,
                                                     int64_t query_count,
                                                     const SearchOptions& options = {});
+
+/// How many clips of the database no search can find, since the index has no
+/// vector of them.
+int64_t clips_without_vectors(const Database& database, const VectorIndex& index);
 
 }  // namespace remomask

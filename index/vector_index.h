@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,22 @@ namespace remomask {
 
 struct VectorIndexOptions {
   /// What to build, as FAISS's index_factory reads it: "Flat" (exact), or an
-  /// approximate type such as "IVF256,Flat" or "HNSW32".
-  std::string factory = "Flat";
+  /// approximate type such as "IVF256,Flat" or "HNSW32". "auto": by the number
+  /// of vectors (resolve_factory in faiss_index.h).
+  std::string factory = "auto";
   /// How an approximate type searches, for example "nprobe=16" or "efSearch=64".
+  /// Empty: FAISS's default; for "auto" the least nprobe with a recall of 0.97.
   std::string search_parameters;
+};
+
+/// What kind of index was built.
+struct IndexType {
+  std::string requested;  ///< "auto", or the same as `factory`
+  std::string factory;
+  std::string search_parameters;
+  /// Share of the true ten nearest that a search finds, measured when it was
+  /// built with 100 stored vectors as queries; nothing for "Flat", which is exact.
+  std::optional<double> recall;
 };
 
 /// Which state of which database an index holds.
@@ -30,9 +43,15 @@ struct VectorHit {
   float similarity = 0;  ///< cosine, -1 .. 1
 };
 
+/// How many clips a new state has more and less.
+struct IndexDifference {
+  int64_t added = 0, dropped = 0;
+};
+
 /// The motion vectors of all embedded clips, ready to be searched: a cache that
-/// can be made again from the database at any time. Const functions may be
-/// called from several threads.
+/// can be made again from the database at any time. It consists of a base, as
+/// it was built, and of the changes since: dropped clips and added vectors.
+/// Const functions may be called from several threads.
 class VectorIndex {
  public:
   /// Builds from the vectors that `retriever_hash` made. Throws Error when
@@ -45,23 +64,29 @@ class VectorIndex {
   VectorIndex(IndexStamp stamp, const std::vector<int64_t>& ids, const std::vector<float>& vectors,
               int width, const VectorIndexOptions& options = {}, const Monitor& monitor = {});
 
-  /// Reads what save() wrote. Throws FileError when the file is missing, cut
-  /// off or damaged; Error when the database has changed since, or when
-  /// another retriever made the vectors.
-  static VectorIndex load(const std::string& path, const Database& database,
+  /// Reads what save() wrote and follows the database to its present state.
+  /// Throws FileError when a file is missing, cut off or damaged; Error when
+  /// the index belongs to another database, a later state or another retriever.
+  static VectorIndex open(const std::string& path, const Database& database,
                           const std::string& retriever_hash);
 
   ~VectorIndex();
   VectorIndex(VectorIndex&&) noexcept;
   VectorIndex& operator=(VectorIndex&&) noexcept;
 
-  /// Writes atomically. The file begins with a plain FAISS index (IDMap2), which
-  /// FAISS reads by itself; what this program adds follows behind it.
-  void save(const std::string& path) const;
+  /// Takes over what has changed in the database that this index was built
+  /// from: costs a list of ids and the new vectors. Throws Error for another database.
+  IndexDifference follow(const Database& database);
+
+  /// Writes atomically. When `path` holds the base of this index, only the
+  /// changes are written, to a small file beside it (delta_path in
+  /// index_changes.h), unless they are worth a new base. A base file begins
+  /// with a plain FAISS index (IDMap2), which FAISS reads by itself.
+  void save(const std::string& path);
 
   /// The `k` clips nearest to each of the `queries` [query_count][width]
-  /// (L2-normalised), best first, equal similarities by clip id; fewer when
-  /// fewer clips are there. `allowed` (clip ids, ascending) limits the search.
+  /// (L2-normalised), best first, equal similarities by clip id; fewer only
+  /// when fewer clips are there. `allowed` (clip ids, ascending) limits the search.
   /// Exact for "Flat" and whenever `allowed` is given; other types may miss
   /// clips, but the similarities that they return are exact.
   std::vector<std::vector<VectorHit>> search(const float* queries, int64_t query_count, int64_t k,
@@ -72,7 +97,7 @@ class VectorIndex {
 
   int64_t count() const;
   int width() const;
-  const std::string& factory() const;
+  const IndexType& type() const;
   const IndexStamp& stamp() const;
   const std::vector<int64_t>& clip_ids() const;  ///< ascending
 

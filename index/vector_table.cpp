@@ -83,7 +83,7 @@ std::vector<VectorHit> VectorTable::nearest(const LinearQuery& query, int64_t k,
     }
   }
   const auto found = exact_top_k(rows_.data(), count(), global_width_ + parts_width_,
-                                 allowed ? &rows : nullptr, unit.data(), 1, k);
+                                 {allowed ? &rows : nullptr, nullptr}, unit.data(), 1, k);
   std::vector<VectorHit> hits;
   for (const RowScore& row : found.front()) {
     hits.push_back({ids_[static_cast<size_t>(row.row)], static_cast<float>(row.score * length)});

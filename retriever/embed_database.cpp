@@ -3,12 +3,13 @@
 #include <torch/utils.h>
 
 #include <algorithm>
-#include <limits>
-#include <set>
+#include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "base/error.h"
-#include "db/training_set.h"
+#include "motion/features.h"
+#include "motion/skeleton.h"
 #include "retriever/projection.h"
 #include "text/caption.h"
 
@@ -50,46 +51,65 @@ class CaptionVectors {
   std::unordered_map<std::string, at::Tensor> vectors_;
 };
 
+const Skeleton& stored_skeleton(const Clip& clip) {
+  for (const Skeleton* skeleton : {&humanml_skeleton(), &kit_skeleton()}) {
+    if (skeleton->name == clip.skeleton) return *skeleton;
+  }
+  throw Error("clip '" + clip.name + "' has the unknown skeleton '" + clip.skeleton +
+              "'; it was stored by another program, remove it");
+}
+
+Features stored_features(const Database& database, const Clip& clip, FeatureMode mode) {
+  try {
+    return extract_features_all_frames(database.motion(clip.id), stored_skeleton(clip), mode);
+  } catch (const Error& error) {
+    throw Error("clip '" + clip.name + "': " + error.what());
+  }
+}
+
+std::vector<Clip> clips_to_embed(const Database& database, const std::string& retriever_hash) {
+  const ReadSnapshot snapshot(database);
+  const std::vector<int64_t> stored = database.embedded_clips(retriever_hash);
+  if (static_cast<int64_t>(stored.size()) == database.clip_count()) return {};
+  std::vector<Clip> clips = database.clips();
+  std::erase_if(clips, [&](const Clip& clip) {
+    return clip.frames < kLeastFramesToEmbed ||
+           std::binary_search(stored.begin(), stored.end(), clip.id);
+  });
+  return clips;
+}
+
 }  // namespace
 
 int64_t embed_database(Database& database, const Retriever& retriever, const Monitor& monitor) {
-  std::set<int64_t> wanted, stored;
-  for (const Clip& clip : database.clips()) {
-    if (clip.frames >= kLeastFramesToEmbed) wanted.insert(clip.id);
-  }
-  for (const ClipEmbedding& known : database.embeddings(retriever.hash())) {
-    stored.insert(known.clip_id);
-  }
-  if (wanted == stored) return 0;
-
-  TrainingSetOptions options;
-  options.splits = {"train", "val", "test", "none"};
-  options.mode = retriever.feature_mode();
-  options.add_mirrored = false;
-  options.min_frames = kLeastFramesToEmbed;
-  options.max_frames = 200;  // of the longest clip: nothing is cut
-  const std::vector<TrainingClip> clips = load_training_set(database, options);
+  const std::vector<Clip> clips = clips_to_embed(database, retriever.hash());
   CaptionVectors captions(retriever);
-  std::vector<ClipEmbedding> embeddings;
   for (size_t first = 0; first < clips.size(); first += kEmbeddingBatch) {
     if (monitor.stop_requested()) {
-      throw Interrupted("embedding the database was stopped; nothing was stored");
+      throw Interrupted("embedding the database was stopped after " + std::to_string(first) +
+                        " of " + std::to_string(clips.size()) +
+                        " clips, which are stored; the same command goes on");
     }
     const size_t last = std::min(clips.size(), first + kEmbeddingBatch);
-    std::vector<const Features*> features;
-    for (size_t c = first; c < last; ++c) features.push_back(&clips[c].features);
-    const MotionEncoding motion = retriever.encode_motion(features);
+    std::vector<Features> features;
+    for (size_t c = first; c < last; ++c) {
+      features.push_back(stored_features(database, clips[c], retriever.feature_mode()));
+    }
+    std::vector<const Features*> batch;
+    for (const Features& one : features) batch.push_back(&one);
+    const MotionEncoding motion = retriever.encode_motion(batch);
+    std::vector<ClipEmbedding> embeddings;
     for (size_t c = first; c < last; ++c) {
       const auto row = static_cast<int64_t>(c - first);
-      embeddings.push_back({clips[c].clip_id, float_vector(motion.global[row]),
+      embeddings.push_back({clips[c].id, float_vector(motion.global[row]),
                             float_vector(motion.parts[row].flatten()),
                             captions.mean(clips[c].captions)});
     }
+    database.add_embeddings(retriever.hash(), embeddings);
     monitor.report({"embed " + database.path(), static_cast<double>(last),
                     static_cast<double>(clips.size()), ""});
   }
-  database.store_embeddings(retriever.hash(), embeddings);
-  return static_cast<int64_t>(embeddings.size());
+  return static_cast<int64_t>(clips.size());
 }
 
 }  // namespace remomask

@@ -6,10 +6,10 @@
 
 namespace remomask {
 
-/// Stores the vectors of every clip (motion, parts, mean of its captions) under
-/// the retriever's hash. Returns how many clips were embedded: 0 when they were
-/// there already. Clips without captions have no text vector; clips of fewer
-/// than 4 frames are left out. Nothing is stored when stopped.
+/// Stores the vectors (motion, parts, mean of the captions) of every clip that
+/// has none of this retriever yet; returns how many. Clips without captions have
+/// no text vector; clips of fewer than 4 frames are left out. A few clips are
+/// stored at a time: a stopped run (Interrupted) keeps what is done.
 int64_t embed_database(Database& database, const Retriever& retriever, const Monitor& monitor = {});
 
 }  // namespace remomask

@@ -1,15 +1,45 @@
 #include <fmt/format.h>
 
+#include "index/update_index.h"
 #include "retriever/embed_database.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
 namespace remomask {
 
+namespace {
+
+std::string describe_type(const IndexType& type) {
+  std::string text = type.factory;
+  if (!type.search_parameters.empty()) text += " " + type.search_parameters;
+  if (type.requested != type.factory) text += " (" + type.requested + ")";
+  return text + (type.recall ? fmt::format(", recall@10 {:.3f}", *type.recall) : ", exact");
+}
+
+nlohmann::json update_json(const FileOptions& files, int64_t embedded, const IndexUpdate& made) {
+  nlohmann::json document = {{"index", files.index_path()},
+                             {"clips", made.count},
+                             {"width", made.width},
+                             {"factory", made.type.factory},
+                             {"requested", made.type.requested},
+                             {"search_parameters", made.type.search_parameters},
+                             {"recall_at_10", nullptr},
+                             {"embedded", embedded},
+                             {"added", made.difference.added},
+                             {"dropped", made.difference.dropped},
+                             {"rebuilt", nullptr}};
+  if (made.type.recall) document["recall_at_10"] = *made.type.recall;
+  if (!made.rebuilt.empty()) document["rebuilt"] = made.rebuilt;
+  return document;
+}
+
+}  // namespace
+
 void register_index(CLI::App& app, Program& program) {
   struct Options {
     FileOptions files;
     VectorIndexOptions index;
+    bool rebuild = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
@@ -19,29 +49,33 @@ void register_index(CLI::App& app, Program& program) {
   options->files.add_model(*command);
   command->add_option("-o,--index", options->files.index,
                       "index file; default: beside the database");
-  command->add_option("--factory", options->index.factory, "FAISS index type")
-      ->capture_default_str();
+  command->add_option("--factory", options->index.factory,
+                      "FAISS index type, or auto: by the number of clips; default: the type of "
+                      "the index that is there, else auto");
   command->add_option("--search-parameters", options->index.search_parameters,
                       "for approximate types, for example nprobe=16");
-  command->callback([options, &program] {
+  command->add_flag("--rebuild", options->rebuild, "build anew instead of adding what is new");
+  command->callback([command, options, &program] {
     const std::string model_path = options->files.model_path();
     const auto stages = load_model(model_path);
     const Retriever retriever(require_stage(stages, "retriever", model_path));
     Database database(options->files.database_path(), OpenMode::read_write);
     const Monitor monitor = program.monitor();
-    embed_database(database, retriever, monitor);
-    const VectorIndex index =
-        VectorIndex::build(database, retriever.hash(), options->index, monitor);
-    index.save(options->files.index_path());
-    program.finish_progress();
-    if (program.json) {
-      return program.print_json({{"index", options->files.index_path()},
-                                 {"clips", index.count()},
-                                 {"width", index.width()},
-                                 {"factory", index.factory()}});
+    const int64_t embedded = embed_database(database, retriever, monitor);
+    UpdateOptions update;
+    update.rebuild = options->rebuild;
+    if (command->count("--factory") + command->count("--search-parameters") > 0) {
+      update.type = options->index;
     }
-    fmt::print("{}: {} clips, {} numbers each, {}\n", options->files.index_path(), index.count(),
-               index.width(), index.factory());
+    const IndexUpdate made =
+        update_index(options->files.index_path(), database, retriever.hash(), update, monitor);
+    program.finish_progress();
+    if (program.json) return program.print_json(update_json(options->files, embedded, made));
+    fmt::print("{}: {} clips, {} numbers each, {}\n", options->files.index_path(), made.count,
+               made.width, describe_type(made.type));
+    fmt::print("{} clips embedded, {} added, {} dropped{}\n", embedded, made.difference.added,
+               made.difference.dropped,
+               made.rebuilt.empty() ? "" : "; built anew: " + made.rebuilt);
   });
 }
 

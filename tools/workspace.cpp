@@ -60,7 +60,7 @@ SearchWorkspace::SearchWorkspace(const std::map<std::string, ModelStage>& stages
                                  const std::string& index_path)
     : retriever_(require_stage(stages, "retriever", model_path)),
       database_(database_path, OpenMode::read_only),
-      index_(VectorIndex::load(index_path, database_, retriever_.hash())) {}
+      index_(VectorIndex::open(index_path, database_, retriever_.hash())) {}
 
 std::vector<SearchHit> SearchWorkspace::search(const std::string& text,
                                                const SearchOptions& options) const {

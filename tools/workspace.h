@@ -38,7 +38,7 @@ struct FilterOptions {
 /// A retriever with the database and index that it searches.
 class SearchWorkspace {
  public:
-  /// Throws Error when the index is missing, stale, or of another retriever.
+  /// Throws Error when the index is missing or of another database or retriever.
   SearchWorkspace(const std::map<std::string, ModelStage>& stages, const std::string& model_path,
                   const std::string& database_path, const std::string& index_path);
 

@@ -1,5 +1,7 @@
 #include "tests/index/index_test_tools.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -68,6 +70,14 @@ std::vector<VectorHit> search_by_definition(const std::vector<int64_t>& ids,
   });
   hits.resize(std::min(hits.size(), static_cast<size_t>(k)));
   return hits;
+}
+
+void expect_hits(const std::vector<VectorHit>& found, const std::vector<VectorHit>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].clip_id, expected[i].clip_id) << "place " << i;
+    EXPECT_EQ(found[i].similarity, expected[i].similarity) << "place " << i;
+  }
 }
 
 int64_t add_test_clip(Database& database, const Clip& clip, int frames) {

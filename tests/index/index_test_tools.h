@@ -24,6 +24,9 @@ std::vector<VectorHit> search_by_definition(const std::vector<int64_t>& ids,
                                             const float* query, int64_t k,
                                             const std::vector<int64_t>* allowed = nullptr);
 
+/// Equal clips and equal bits.
+void expect_hits(const std::vector<VectorHit>& found, const std::vector<VectorHit>& expected);
+
 /// Stores a clip with a motion of its own (any number of frames), returns its id.
 int64_t add_test_clip(Database& database, const Clip& clip, int frames = 40);
 

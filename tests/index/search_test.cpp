@@ -92,9 +92,28 @@ TEST_F(SearchDatabase, AnswersEveryQueryOfABatch) {
   EXPECT_EQ(hits[1][0].clip.name, "clip29");
 }
 
-TEST_F(SearchDatabase, RefusesAStaleIndex) {
-  add_test_clip(*database_, named_clip("one more"));
-  EXPECT_NE(error_of([&] { names({}); }).find("the database has changed"), std::string::npos);
+TEST_F(SearchDatabase, AnotherProcessWritesBesideAnOpenIndex) {
+  EXPECT_EQ(clips_without_vectors(*database_, *index_), 0);
+  {
+    Database writer(database_->path(), OpenMode::read_write);
+    add_test_clip(writer, named_clip("one more"));
+    writer.remove({*writer.find_name("clip0"), *writer.find_name("clip2")});
+  }
+  // What was lost is left out, and the search looks further for k clips.
+  EXPECT_EQ(names(best(3)), (Names{"clip1", "clip3", "clip4"}));
+  SearchOptions options = best(2);
+  options.filter.splits = {"train"};
+  EXPECT_EQ(names(options), (Names{"clip4", "clip6"}));
+  EXPECT_EQ(names(best(30)).size(), 28u);
+  EXPECT_EQ(clips_without_vectors(*database_, *index_), 1);
+  index_->follow(*database_);
+  EXPECT_EQ(names(best(3)), (Names{"clip1", "clip3", "clip4"}));
+}
+
+TEST_F(SearchDatabase, RefusesTheIndexOfAnotherDatabase) {
+  const Database other(folder_ / "other.sqlite", OpenMode::create);
+  EXPECT_NE(error_of([&] { search_database(other, *index_, query_, 1, best(1)); }).find("another"),
+            std::string::npos);
 }
 
 }  // namespace

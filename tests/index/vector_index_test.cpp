@@ -1,16 +1,20 @@
 #include "index/vector_index.h"
 
+#include <faiss/IndexIVF.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
-#include <fstream>
+#include <filesystem>
 #include <limits>
 #include <thread>
 
 #include "base/file.h"
 #include "base/random.h"
+#include "index/faiss_index.h"
+#include "index/recall.h"
 #include "tests/db/db_test_tools.h"
 #include "tests/index/index_test_tools.h"
 
@@ -18,14 +22,6 @@ namespace remomask {
 namespace {
 
 constexpr int kWidth = 48;
-
-void expect_hits(const std::vector<VectorHit>& found, const std::vector<VectorHit>& expected) {
-  ASSERT_EQ(found.size(), expected.size());
-  for (size_t i = 0; i < found.size(); ++i) {
-    EXPECT_EQ(found[i].clip_id, expected[i].clip_id) << "place " << i;
-    EXPECT_EQ(found[i].similarity, expected[i].similarity) << "place " << i;
-  }
-}
 
 double recall(const VectorIndex& index, const std::vector<int64_t>& ids,
               const std::vector<float>& vectors, const std::vector<float>& queries, int64_t k) {
@@ -159,10 +155,52 @@ TEST(VectorIndex, ApproximateTypesFindMostNeighbours) {
   const VectorIndex compressed(stamp, ids, vectors, kWidth, {"SQ8", ""});
   EXPECT_GT(recall(compressed, ids, vectors, queries, 10), 0.9);
   // With a filter they scan exactly.
-  std::vector<int64_t> allowed;
-  for (size_t i = 0; i < ids.size(); i += 100) allowed.push_back(ids[i]);
-  expect_hits(graph.search(queries.data(), 1, 10, &allowed).front(),
-              search_by_definition(ids, vectors, kWidth, queries.data(), 10, &allowed));
+  for (const size_t step : {2, 20, 200}) {
+    std::vector<int64_t> allowed;
+    for (size_t i = 0; i < ids.size(); i += step) allowed.push_back(ids[i]);
+    for (const VectorIndex* index : {&lists, &graph, &compressed}) {
+      expect_hits(index->search(queries.data(), 1, 10, &allowed).front(),
+                  search_by_definition(ids, vectors, kWidth, queries.data(), 10, &allowed));
+    }
+  }
+}
+
+TEST(VectorIndex, FindsKClipsThoughItsListsHoldFewer) {
+  const auto ids = sparse_ids(200);
+  const auto vectors = random_directions(200, kWidth, 19);
+  const auto query = random_directions(1, kWidth, 20);
+  const VectorIndex lists({"uuid", 1, "r"}, ids, vectors, kWidth, {"IVF50,Flat", "nprobe=1"});
+  expect_hits(lists.search(query.data(), 1, 100).front(),
+              search_by_definition(ids, vectors, kWidth, query.data(), 100));
+}
+
+TEST(VectorIndex, AutoChoosesByTheNumberOfVectors) {
+  EXPECT_EQ(resolve_factory("HNSW32", 3), "HNSW32");
+  EXPECT_EQ(resolve_factory("auto", 499999), "Flat");
+  EXPECT_EQ(resolve_factory("auto", 500000), "IVF1024,Flat");   // 2 sqrt(n) = 1414
+  EXPECT_EQ(resolve_factory("auto", 1000000), "IVF2048,Flat");  // 2000
+  EXPECT_EQ(resolve_factory("auto", 1000000000), "IVF16384,Flat");
+}
+
+TEST(VectorIndex, ProbesAreTunedToTheRecall) {
+  const auto ids = sparse_ids(3000);
+  const auto vectors = clustered_directions(3000, kWidth, 100, 21);
+  const IndexType type{"IVF64,Flat", "IVF64,Flat", "", std::nullopt};
+  auto exact = std::make_unique<faiss::IndexFlat>(kWidth, faiss::METRIC_INNER_PRODUCT);
+  exact->add(3000, vectors.data());
+  IndexSegments segments(build_faiss_index(ids, vectors.data(), kWidth, type, {}),
+                         std::move(exact));
+  const RecallSample sample(segments);
+  const double before = sample.measure(segments);  // one list a query
+  const std::string chosen = tune_probes(segments, sample);
+  EXPECT_GE(sample.measure(segments), 0.97);
+  const int probes = std::stoi(chosen.substr(chosen.find('=') + 1));
+  EXPECT_TRUE(std::has_single_bit(static_cast<unsigned>(probes))) << chosen;
+  if (probes > 1) {
+    EXPECT_LT(before, 0.97);
+    dynamic_cast<faiss::IndexIVF*>(segments.base().index)->nprobe /= 2;
+    EXPECT_LT(sample.measure(segments), 0.97);
+  }
 }
 
 TEST(VectorIndex, ThreeThreadsReadAtOnce) {
@@ -244,7 +282,7 @@ class StoredIndex : public ::testing::Test {
   }
 
   std::string load_error(const std::string& retriever = "retriever") {
-    return error_of([&] { VectorIndex::load(path_, *database_, retriever); });
+    return error_of([&] { VectorIndex::open(path_, *database_, retriever); });
   }
 
   TestFolder folder_;
@@ -257,12 +295,12 @@ TEST_F(StoredIndex, FindsTheSameAfterLoading) {
   for (const VectorIndexOptions& options :
        {VectorIndexOptions{}, VectorIndexOptions{"IVF4,Flat", "nprobe=2"},
         VectorIndexOptions{"HNSW8", "efSearch=20"}}) {
-    const auto built = VectorIndex::build(*database_, "retriever", options);
+    auto built = VectorIndex::build(*database_, "retriever", options);
     built.save(path_);
-    const auto loaded = VectorIndex::load(path_, *database_, "retriever");
+    const auto loaded = VectorIndex::open(path_, *database_, "retriever");
     EXPECT_EQ(loaded.count(), 60);
     EXPECT_EQ(loaded.width(), kWidth);
-    EXPECT_EQ(loaded.factory(), options.factory);
+    EXPECT_EQ(loaded.type().factory, built.type().factory);
     EXPECT_EQ(loaded.clip_ids(), built.clip_ids());
     const auto expected = built.search(queries_.data(), 10, 7);
     const auto found = loaded.search(queries_.data(), 10, 7);
@@ -281,7 +319,7 @@ TEST_F(StoredIndex, RefusesEveryCutAndEveryFlippedByte) {
     for (size_t i = 0; i < 40; ++i) {
       const size_t position = i * (content.size() - 1) / 39;
       write_file_atomically(path_, content.substr(0, position));
-      EXPECT_THROW(VectorIndex::load(path_, *database_, "retriever"), FileError)
+      EXPECT_THROW(VectorIndex::open(path_, *database_, "retriever"), FileError)
           << "cut at " << position;
       std::string flipped = content;
       flipped[position] = static_cast<char>(flipped[position] ^ 0x10);
@@ -290,25 +328,49 @@ TEST_F(StoredIndex, RefusesEveryCutAndEveryFlippedByte) {
     }
   }
   write_file_atomically(path_, "");
-  EXPECT_NE(load_error().find("is no index"), std::string::npos);
-}
-
-TEST_F(StoredIndex, RefusesAChangedDatabase) {
-  const auto index = VectorIndex::build(*database_, "retriever");
-  index.save(path_);
-  add_test_clip(*database_, named_clip("one more"));
-  EXPECT_NE(load_error().find(
-                "the database has changed since this index was built; run: remomask index DB"),
-            std::string::npos);
-  EXPECT_NE(error_of([&] { index.require_current(*database_); }), "");
+  EXPECT_NE(load_error().find("is no file of an index"), std::string::npos);
 }
 
 TEST_F(StoredIndex, RefusesAnotherDatabase) {
   VectorIndex::build(*database_, "retriever").save(path_);
   const std::string other_path = folder_ / "other.sqlite";
   Database other(other_path, OpenMode::create);
-  EXPECT_NE(error_of([&] { VectorIndex::load(path_, other, "retriever"); }).find("has changed"),
+  EXPECT_NE(
+      error_of([&] { VectorIndex::open(path_, other, "retriever"); }).find("another database"),
+      std::string::npos);
+  auto index = VectorIndex::open(path_, *database_, "retriever");
+  EXPECT_NE(error_of([&] { index.follow(other); }).find("another database"), std::string::npos);
+}
+
+TEST_F(StoredIndex, RefusesALaterState) {
+  const std::string copy = folder_ / "copy.sqlite";
+  std::filesystem::copy_file(database_->path(), copy);
+  for (const char* extra : {"-wal", "-shm"}) {
+    if (std::filesystem::exists(database_->path() + extra)) {
+      std::filesystem::copy_file(database_->path() + extra, copy + extra);
+    }
+  }
+  add_test_clip(*database_, named_clip("one more"));
+  VectorIndex::build(*database_, "retriever").save(path_);
+  const Database older(copy, OpenMode::read_only);
+  EXPECT_NE(error_of([&] { VectorIndex::open(path_, older, "retriever"); }).find("later state"),
             std::string::npos);
+}
+
+TEST_F(StoredIndex, KeepsItsTypeAndItsMeasuredRecall) {
+  auto built = VectorIndex::build(*database_, "retriever", {"IVF8,Flat", "nprobe=2"});
+  ASSERT_TRUE(built.type().recall.has_value());
+  EXPECT_GT(*built.type().recall, 0.0);
+  EXPECT_LT(*built.type().recall, 1.0);
+  built.save(path_);
+  const auto opened = VectorIndex::open(path_, *database_, "retriever");
+  EXPECT_EQ(opened.type().requested, "IVF8,Flat");
+  EXPECT_EQ(opened.type().search_parameters, "nprobe=2");
+  EXPECT_EQ(opened.type().recall, built.type().recall);
+  const auto flat = VectorIndex::build(*database_, "retriever");
+  EXPECT_EQ(flat.type().requested, "auto");
+  EXPECT_EQ(flat.type().factory, "Flat");
+  EXPECT_FALSE(flat.type().recall.has_value());
 }
 
 TEST_F(StoredIndex, RefusesAnotherRetriever) {

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace remomask {
+
+/// The content of a file, mapped: nothing is read before it is used. The file
+/// must only ever be replaced by renaming, as base/file.h does it.
+class MappedFile {
+ public:
+  /// Throws FileError when the file cannot be read.
+  explicit MappedFile(const std::string& path);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+  std::string_view content() const { return {data_, size_}; }
+
+ private:
+  const char* data_ = nullptr;
+  size_t size_ = 0;
+};
+
+/// A file of the index: a body of binary data, a JSON object that describes it,
+/// its length (8 bytes, little-endian), 8 bytes of magic. The description is at
+/// the end so that other programs can read the body by itself.
+struct DescribedContent {
+  std::string_view body;
+  nlohmann::json description;
+};
+
+/// What follows behind the body. Adds a checksum of the description to it.
+std::string describe(nlohmann::json description, std::string_view magic);
+
+/// Takes the content of such a file apart; the body is not checked. Throws
+/// FileError that ends with `remedy` when it is cut off or the description damaged.
+DescribedContent split_described(const std::string& path, std::string_view content,
+                                 std::string_view magic, const std::string& remedy);
+
+}  // namespace remomask

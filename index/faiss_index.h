@@ -1,0 +1,26 @@
+#pragma once
+
+#include <faiss/IndexIDMap.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "index/vector_index.h"
+
+namespace remomask {
+
+/// The type that "auto" means for this many vectors: "Flat" below 500,000, else
+/// "IVF<n>,Flat" with n the power of two nearest to 2 sqrt(count), from 1,024
+/// to 16,384. Other types stay as they are.
+std::string resolve_factory(const std::string& requested, int64_t count);
+
+/// A FAISS index of `vectors` [ids][width], trained and filled. Throws Error
+/// for a type that FAISS cannot build from them; Interrupted.
+std::unique_ptr<faiss::IndexIDMap2> build_faiss_index(const std::vector<int64_t>& ids,
+                                                      const float* vectors, int width,
+                                                      const IndexType& type,
+                                                      const Monitor& monitor);
+
+}  // namespace remomask

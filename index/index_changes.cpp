@@ -1,0 +1,194 @@
+#include "index/index_changes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "index/described_file.h"
+#include "index/exact_scan.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr std::string_view kDeltaMagic = "RMMDELTA";
+constexpr int kDeltaVersion = 1;
+constexpr double kFoldShareOfExact = 0.10, kFoldShareOfApproximate = 0.02;
+constexpr const char* kUpdate = "run: remomask index DB";
+
+using Ids = std::vector<int64_t>;
+
+Ids ids_without(const Ids& left, const Ids& right) {
+  Ids result;
+  std::set_difference(left.begin(), left.end(), right.begin(), right.end(),
+                      std::back_inserter(result));
+  return result;
+}
+
+/// The added clips that are still wanted, and the missing ones, by id.
+void replace_added(IndexChanges& changes, const Ids& wanted, const Ids& missing,
+                   const std::vector<float>& missing_vectors, int width) {
+  std::vector<float> vectors;
+  vectors.reserve(wanted.size() * static_cast<size_t>(width));
+  auto known = changes.added.begin();
+  auto found = missing.begin();
+  for (const int64_t id : wanted) {
+    known = std::lower_bound(known, changes.added.end(), id);
+    found = std::lower_bound(found, missing.end(), id);
+    const bool is_new = found != missing.end() && *found == id;
+    const auto row = is_new ? found - missing.begin() : known - changes.added.begin();
+    const auto source = (is_new ? missing_vectors : changes.vectors).begin() + row * width;
+    vectors.insert(vectors.end(), source, source + width);
+  }
+  changes.added = wanted;
+  changes.vectors = std::move(vectors);
+}
+
+template <typename Value>
+void append_values(std::string& body, const std::vector<Value>& values) {
+  body.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
+}
+
+template <typename Value>
+void take_values(std::string_view& body, size_t count, std::vector<Value>& values) {
+  values.resize(count);
+  if (count > 0) std::memcpy(values.data(), body.data(), count * sizeof(Value));
+  body.remove_prefix(count * sizeof(Value));
+}
+
+}  // namespace
+
+std::vector<float> motion_vectors(const Database& database,
+                                  const std::vector<ClipEmbedding>& embeddings, int width) {
+  std::vector<float> vectors;
+  vectors.reserve(embeddings.size() * static_cast<size_t>(width));
+  for (const ClipEmbedding& embedding : embeddings) {
+    const auto& motion = embedding.motion;
+    if (motion.size() != static_cast<size_t>(width) || width == 0) {
+      throw Error(
+          fmt::format("{}: the vector of clip number {} has {} numbers instead of {}; "
+                      "store the vectors of this retriever again",
+                      database.path(), embedding.clip_id, motion.size(), width));
+    }
+    require_unit_length(motion.data(), width,
+                        fmt::format("the vector of clip number {}", embedding.clip_id));
+    vectors.insert(vectors.end(), motion.begin(), motion.end());
+  }
+  return vectors;
+}
+
+void require_same_origin(const std::string& path, const IndexStamp& stamp, const Database& database,
+                         const std::string& retriever_hash) {
+  if (stamp.retriever_hash != retriever_hash) {
+    throw Error(path + ": this index was built with another retriever (" + stamp.retriever_hash +
+                " instead of " + retriever_hash + "); run: remomask index DB");
+  }
+  if (stamp.database_uuid != database.uuid()) {
+    throw Error(path + ": this index belongs to another database than " + database.path() +
+                "; run: remomask index DB");
+  }
+  if (stamp.generation > database.generation()) {
+    throw Error(path + ": this index is of a later state than " + database.path() +
+                " (is that an older copy?); run: remomask index DB");
+  }
+}
+
+FollowedState follow_database(const Database& database, const std::vector<int64_t>& base_ids,
+                              int width, IndexStamp& stamp, IndexChanges& changes) {
+  FollowedState result;
+  Ids former = ids_without(base_ids, changes.dropped);
+  former.insert(former.end(), changes.added.begin(), changes.added.end());
+  std::inplace_merge(former.begin(),
+                     former.end() - static_cast<std::ptrdiff_t>(changes.added.size()),
+                     former.end());
+  const int64_t generation = database.generation();
+  if (generation == stamp.generation) {
+    result.ids = std::move(former);
+    return result;
+  }
+  result.ids = database.embedded_clips(stamp.retriever_hash);
+  const Ids wanted = ids_without(result.ids, base_ids);
+  const Ids missing = ids_without(wanted, changes.added);
+  std::vector<float> vectors;
+  if (!missing.empty()) {
+    vectors = motion_vectors(database, database.embeddings(stamp.retriever_hash, missing), width);
+  }
+  replace_added(changes, wanted, missing, vectors, width);
+  changes.dropped = ids_without(base_ids, result.ids);
+  stamp.generation = generation;
+  result.difference.added = static_cast<int64_t>(ids_without(result.ids, former).size());
+  result.difference.dropped = static_cast<int64_t>(ids_without(former, result.ids).size());
+  return result;
+}
+
+bool worth_folding(const IndexHeader& base, const IndexChanges& changes) {
+  const double share = base.type.factory == "Flat" ? kFoldShareOfExact : kFoldShareOfApproximate;
+  return static_cast<double>(changes.added.size() + changes.dropped.size()) >
+         share * static_cast<double>(base.ids.size());
+}
+
+std::string delta_path(const std::string& path) { return path + ".delta"; }
+
+void write_index_delta(const std::string& path, const IndexHeader& base, const IndexDelta& delta) {
+  if (delta.changes.empty() && delta.stamp.generation == base.stamp.generation) {
+    std::filesystem::remove(delta_path(path));
+    return;
+  }
+  std::string body;
+  append_values(body, delta.changes.added);
+  append_values(body, delta.changes.dropped);
+  append_values(body, delta.changes.vectors);
+  const nlohmann::json description = {{"format", "remomask index delta"},
+                                      {"version", kDeltaVersion},
+                                      {"base", base.checksum},
+                                      {"database", delta.stamp.database_uuid},
+                                      {"generation", delta.stamp.generation},
+                                      {"retriever", delta.stamp.retriever_hash},
+                                      {"added", delta.changes.added.size()},
+                                      {"dropped", delta.changes.dropped.size()},
+                                      {"width", base.width},
+                                      {"checksum", content_hash(body)}};
+  write_file_atomically(delta_path(path), body + describe(description, kDeltaMagic));
+}
+
+std::optional<IndexDelta> read_index_delta(const std::string& path, const IndexHeader& base) {
+  const std::string file = delta_path(path);
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  const std::string content = read_file(file);
+  try {
+    const auto [whole, description] = split_described(file, content, kDeltaMagic, kUpdate);
+    if (description.at("version").get<int>() > kDeltaVersion) {
+      throw FileError(file, 0, std::string("was made by a newer version of remomask; ") + kUpdate);
+    }
+    if (description.at("checksum").get<std::string>() != content_hash(whole)) {
+      throw FileError(file, 0, std::string("the index is damaged; ") + kUpdate);
+    }
+    if (description.at("base").get<std::string>() != base.checksum) return std::nullopt;
+    IndexDelta delta;
+    delta.stamp = {description.at("database").get<std::string>(),
+                   description.at("generation").get<int64_t>(),
+                   description.at("retriever").get<std::string>()};
+    const auto added = description.at("added").get<size_t>();
+    const auto dropped = description.at("dropped").get<size_t>();
+    const auto numbers = added * static_cast<size_t>(base.width);
+    if (whole.size() != (added + dropped) * sizeof(int64_t) + numbers * sizeof(float)) {
+      throw FileError(file, 0, std::string("the index is damaged; ") + kUpdate);
+    }
+    std::string_view rest = whole;
+    take_values(rest, added, delta.changes.added);
+    take_values(rest, dropped, delta.changes.dropped);
+    take_values(rest, numbers, delta.changes.vectors);
+    return delta;
+  } catch (const nlohmann::json::exception& error) {
+    throw FileError(file, 0,
+                    std::string("the index is damaged (") + error.what() + "); " + kUpdate);
+  }
+}
+
+}  // namespace remomask

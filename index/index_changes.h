@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "db/database.h"
+#include "index/index_file.h"
+#include "index/vector_index.h"
+
+namespace remomask {
+
+/// What the present state has more and less than the base, the index as it was
+/// built. For one retriever the vector of a clip id never changes, so the ids
+/// say everything.
+struct IndexChanges {
+  std::vector<int64_t> dropped;  ///< of the base, ascending
+  std::vector<int64_t> added;    ///< not in the base, ascending
+  std::vector<float> vectors;    ///< [added][width]
+
+  bool empty() const { return dropped.empty() && added.empty(); }
+};
+
+/// Motion vectors of database rows, one after the other. Throws Error when one
+/// has another width or is not L2-normalised.
+std::vector<float> motion_vectors(const Database& database,
+                                  const std::vector<ClipEmbedding>& embeddings, int width);
+
+/// Throws Error when the index at `path` with this stamp is of another database
+/// or retriever, or of a state that this database has not reached.
+void require_same_origin(const std::string& path, const IndexStamp& stamp, const Database& database,
+                         const std::string& retriever_hash);
+
+/// Brings `changes` and `stamp` to the database's present state, which the
+/// caller holds by a ReadSnapshot. Reads the vectors of new ids only. Returns
+/// the ids that are present now, ascending, and what was new among them.
+struct FollowedState {
+  std::vector<int64_t> ids;
+  IndexDifference difference;
+};
+FollowedState follow_database(const Database& database, const std::vector<int64_t>& base_ids,
+                              int width, IndexStamp& stamp, IndexChanges& changes);
+
+/// Whether so many changes are better built into a new base: more than 10 % of
+/// its clips, or 2 % for approximate types, whose added clips are scanned exactly.
+bool worth_folding(const IndexHeader& base, const IndexChanges& changes);
+
+/// The changes as a file beside the base.
+struct IndexDelta {
+  IndexStamp stamp;
+  IndexChanges changes;
+};
+
+/// The delta of the index file `path`.
+std::string delta_path(const std::string& path);
+
+/// Writes the delta of the index file `path` atomically, or removes it when the
+/// base alone says the same.
+void write_index_delta(const std::string& path, const IndexHeader& base, const IndexDelta& delta);
+
+/// Nothing when there is none or when it belongs to another base, as after a
+/// kill between the writing of a new base and the removal of its old delta.
+/// Throws FileError when it is cut off or damaged.
+std::optional<IndexDelta> read_index_delta(const std::string& path, const IndexHeader& base);
+
+}  // namespace remomask

@@ -1,0 +1,230 @@
+#include <filesystem>
+
+#include "base/file.h"
+#include "index/index_changes.h"
+#include "tests/index/living_database.h"
+
+namespace remomask {
+namespace {
+
+class FollowTest : public LivingDatabase {};
+
+TEST_F(FollowTest, EqualsARebuildForEveryType) {
+  // With all lists visited and 1.5 bytes of search depth a clip, these
+  // approximate types find everything: any difference is a mistake.
+  const std::vector<VectorIndexOptions> types = {
+      {}, {"IVF8,Flat", "nprobe=8"}, {"HNSW16", "efSearch=500"}, {"SQfp16", ""}};
+  std::vector<VectorIndex> indexes;
+  for (const auto& type : types) {
+    indexes.push_back(VectorIndex::build(*database_, "retriever", type));
+  }
+  for (const size_t removed : {7, 40, 3}) {
+    add(25);
+    remove_every(removed);
+    for (VectorIndex& index : indexes) {
+      index.follow(*database_);
+      expect_present(index);
+      const auto rebuilt = VectorIndex::build(
+          *database_, "retriever", {index.type().factory, index.type().search_parameters});
+      const auto expected = rebuilt.search(queries_.data(), 6, 12);
+      const auto found = index.search(queries_.data(), 6, 12);
+      for (size_t i = 0; i < 6; ++i) expect_hits(found[i], expected[i]);
+    }
+  }
+}
+
+TEST_F(FollowTest, CountsWhatCameAndWent) {
+  auto index = VectorIndex::build(*database_, "retriever");
+  add(5);
+  remove_every(61);  // 5 of 305
+  const IndexDifference difference = index.follow(*database_);
+  EXPECT_EQ(difference.added, 5);
+  EXPECT_EQ(difference.dropped, 5);
+  const IndexDifference again = index.follow(*database_);
+  EXPECT_EQ(again.added + again.dropped, 0);
+}
+
+TEST_F(FollowTest, VectorsThatComeBackAreFoundAgain) {
+  auto index = VectorIndex::build(*database_, "retriever");
+  const auto all = database_->embeddings("retriever");
+  // As after new captions of a third of the clips: vectors dropped, then made again.
+  database_->store_embeddings("retriever", {all.begin() + 100, all.end()});
+  EXPECT_EQ(index.follow(*database_).dropped, 100);
+  expect_present(index);
+  database_->add_embeddings("retriever", {all.begin(), all.begin() + 100});
+  EXPECT_EQ(index.follow(*database_).added, 100);
+  expect_present(index);
+}
+
+TEST_F(FollowTest, HnswForgetsWholeNeighbourhoods) {
+  auto graph = VectorIndex::build(*database_, "retriever", {"HNSW8", "efSearch=16"});
+  for (int64_t query = 0; query < 6; ++query) {
+    const float* vector = queries_.data() + query * kWidth;
+    std::vector<int64_t> nearest;
+    for (const VectorHit& hit : truth(vector, 40)) nearest.push_back(hit.clip_id);
+    database_->remove(nearest);
+    graph.follow(*database_);
+    const auto found = graph.search(vector, 1, 10).front();
+    ASSERT_EQ(found.size(), 10u);
+    const auto present = database_->embedded_clips("retriever");
+    for (const VectorHit& hit : found) {
+      EXPECT_TRUE(std::binary_search(present.begin(), present.end(), hit.clip_id));
+    }
+    EXPECT_EQ(found.front().clip_id, truth(vector, 1).front().clip_id);
+  }
+}
+
+TEST_F(FollowTest, FiltersHoldForBaseAndAddedClips) {
+  for (const char* factory : {"Flat", "IVF8,Flat", "HNSW8"}) {
+    auto index = VectorIndex::build(*database_, "retriever", {factory, ""});
+    add(100);
+    remove_every(9);
+    index.follow(*database_);
+    const auto present = database_->embedded_clips("retriever");
+    for (const size_t step : {2, 20, 200}) {
+      std::vector<int64_t> allowed;
+      for (size_t i = 1; i < present.size(); i += step) allowed.push_back(present[i]);
+      std::vector<float> vectors;
+      for (const int64_t id : allowed) {
+        const auto vector = vector_of(id);
+        vectors.insert(vectors.end(), vector.begin(), vector.end());
+      }
+      auto asked = allowed;  // also clips that are gone
+      for (int64_t id = 1; id < 20; ++id) {
+        if (!std::binary_search(present.begin(), present.end(), id)) asked.push_back(id);
+      }
+      std::sort(asked.begin(), asked.end());
+      expect_hits(index.search(queries_.data(), 1, 10, &asked).front(),
+                  search_by_definition(allowed, vectors, kWidth, queries_.data(), 10));
+    }
+  }
+}
+
+TEST_F(FollowTest, AnEmptyDatabaseFindsNothing) {
+  auto index = VectorIndex::build(*database_, "retriever");
+  remove_every(1);
+  index.follow(*database_);
+  EXPECT_EQ(index.count(), 0);
+  EXPECT_TRUE(index.search(queries_.data(), 2, 5)[1].empty());
+  EXPECT_NE(error_of([&] { index.save(path_); }).find("without clips"), std::string::npos);
+}
+
+class DeltaTest : public LivingDatabase {
+ protected:
+  void SetUp() override {
+    LivingDatabase::SetUp();
+    VectorIndex::build(*database_, "retriever").save(path_);
+    first_base_ = read_file(path_);
+  }
+  void follow_and_save() {
+    auto index = opened();
+    index.follow(*database_);
+    index.save(path_);
+  }
+
+  std::string first_base_;
+};
+
+TEST_F(DeltaTest, SaveWritesOnlyTheChanges) {
+  add(8);
+  remove_every(60);
+  follow_and_save();
+  EXPECT_EQ(read_file(path_), first_base_);
+  EXPECT_LT(std::filesystem::file_size(delta_path(path_)), first_base_.size() / 10);
+  expect_present(opened());
+  // More upon them, and the clips of the delta may go too.
+  add(3);
+  remove_every(50);
+  follow_and_save();
+  EXPECT_EQ(read_file(path_), first_base_);
+  expect_present(opened());
+}
+
+TEST_F(DeltaTest, OpensWithoutSavingWhatIsNew) {
+  add(4);
+  expect_present(opened());
+  EXPECT_FALSE(std::filesystem::exists(delta_path(path_)));
+}
+
+TEST_F(DeltaTest, ManyChangesBecomeANewBase) {
+  for (const char* factory : {"Flat", "HNSW8", "IVF4,Flat"}) {
+    const VectorIndexOptions type{factory, factory == std::string("IVF4,Flat") ? "nprobe=4" : ""};
+    VectorIndex::build(*database_, "retriever", type).save(path_);
+    const std::string base = read_file(path_);
+    add(5);
+    follow_and_save();
+    ASSERT_EQ(read_file(path_), base) << factory;
+    ASSERT_TRUE(std::filesystem::exists(delta_path(path_)));
+    add(60);
+    remove_every(10);
+    follow_and_save();
+    EXPECT_NE(read_file(path_), base) << factory;
+    EXPECT_FALSE(std::filesystem::exists(delta_path(path_)));
+    EXPECT_EQ(opened().type().factory, factory);
+    EXPECT_EQ(opened().clip_ids(), database_->embedded_clips("retriever"));
+    if (factory != std::string("HNSW8")) expect_present(opened());
+  }
+}
+
+TEST_F(DeltaTest, RefusesEveryCutAndEveryFlippedByte) {
+  add(6);
+  remove_every(100);
+  follow_and_save();
+  const std::string content = read_file(delta_path(path_));
+  for (size_t i = 0; i < 60; ++i) {
+    const size_t position = i * (content.size() - 1) / 59;
+    write_file_atomically(delta_path(path_), content.substr(0, position));
+    EXPECT_THROW(opened(), FileError) << "cut at " << position;
+    std::string flipped = content;
+    flipped[position] = static_cast<char>(flipped[position] ^ 0x10);
+    write_file_atomically(delta_path(path_), flipped);
+    EXPECT_NE(error_of([&] { opened(); }).find("run: remomask index DB"), std::string::npos)
+        << "flipped at " << position;
+  }
+}
+
+TEST_F(DeltaTest, AKillBetweenBaseAndDeltaLeavesAReadablePair) {
+  add(6);
+  remove_every(100);
+  follow_and_save();
+  const std::string first_delta = read_file(delta_path(path_));
+  add(50);
+  remove_every(20);
+  follow_and_save();  // a new base
+  const std::string second_base = read_file(path_);
+  ASSERT_NE(second_base, first_base_);
+  add(2);
+  follow_and_save();
+  const std::string second_delta = read_file(delta_path(path_));
+  ASSERT_EQ(read_file(path_), second_base);
+  // A new base is renamed into place before its old delta is removed, and a
+  // reader may see either file old or new.
+  for (const std::string* base : {&first_base_, &second_base}) {
+    for (const std::string* delta : {&first_delta, &second_delta}) {
+      write_file_atomically(path_, *base);
+      write_file_atomically(delta_path(path_), *delta);
+      expect_present(opened());
+      follow_and_save();
+      expect_present(opened());
+    }
+  }
+}
+
+TEST_F(DeltaTest, SavesAWholeIndexWhereItsBaseIsNot) {
+  add(5);
+  auto index = opened();
+  const std::string elsewhere = folder_ / "elsewhere.index";
+  index.save(elsewhere);
+  EXPECT_FALSE(std::filesystem::exists(delta_path(elsewhere)));
+  expect_present(VectorIndex::open(elsewhere, *database_, "retriever"));
+  // The base was replaced or damaged by another program since it was opened.
+  auto second = opened();
+  write_file_atomically(path_, "damaged");
+  add(1);
+  second.follow(*database_);
+  second.save(path_);
+  expect_present(opened());
+}
+
+}  // namespace
+}  // namespace remomask

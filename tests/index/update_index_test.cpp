@@ -1,0 +1,122 @@
+#include "index/update_index.h"
+
+#include <filesystem>
+
+#include "base/file.h"
+#include "index/index_changes.h"
+#include "tests/index/living_database.h"
+
+namespace remomask {
+namespace {
+
+class UpdateIndexTest : public LivingDatabase {
+ protected:
+  IndexUpdate update(const UpdateOptions& options = {}) {
+    const IndexUpdate made = update_index(path_, *database_, "retriever", options);
+    EXPECT_EQ(made.count, static_cast<int64_t>(database_->embedded_clips("retriever").size()));
+    EXPECT_EQ(made.width, kWidth);
+    if (made.type.factory == "Flat") expect_present(opened());
+    return made;
+  }
+};
+
+TEST_F(UpdateIndexTest, BuildsThenAddsThenFolds) {
+  const IndexUpdate first = update();
+  EXPECT_EQ(first.rebuilt, "there was none");
+  EXPECT_EQ(first.difference.added, 300);
+  EXPECT_EQ(first.type.requested, "auto");
+  const std::string base = read_file(path_);
+
+  EXPECT_EQ(update().rebuilt, "");
+  EXPECT_FALSE(std::filesystem::exists(delta_path(path_)));
+
+  add(10);
+  remove_every(100);  // 4 of 310
+  const IndexUpdate second = update();
+  EXPECT_EQ(second.rebuilt, "");
+  EXPECT_EQ(second.difference.added, 10);
+  EXPECT_EQ(second.difference.dropped, 4);
+  EXPECT_EQ(read_file(path_), base);
+
+  add(1);
+  const IndexUpdate third = update();
+  EXPECT_EQ(third.difference.added, 1);
+  EXPECT_EQ(third.difference.dropped, 0);
+  EXPECT_EQ(read_file(path_), base);
+
+  add(40);
+  EXPECT_EQ(update().rebuilt, "many clips have changed");
+  EXPECT_NE(read_file(path_), base);
+  EXPECT_FALSE(std::filesystem::exists(delta_path(path_)));
+}
+
+TEST_F(UpdateIndexTest, WritesWhatAFollowedIndexSaves) {
+  update();
+  add(7);
+  remove_every(77);
+  auto index = opened();
+  index.save(path_);
+  const std::string saved = read_file(delta_path(path_));
+  std::filesystem::remove(delta_path(path_));
+  update();
+  EXPECT_EQ(read_file(delta_path(path_)), saved);
+}
+
+TEST_F(UpdateIndexTest, KeepsTheTypeUnlessAnotherIsAskedFor) {
+  UpdateOptions lists;
+  lists.type = VectorIndexOptions{"IVF4,Flat", "nprobe=3"};
+  update();
+  const IndexUpdate changed = update(lists);
+  EXPECT_EQ(changed.rebuilt, "another type is wanted");
+  EXPECT_TRUE(changed.type.recall.has_value());
+  EXPECT_EQ(changed.difference.added, 0);
+  add(2);
+  EXPECT_EQ(update().type.factory, "IVF4,Flat");
+  EXPECT_EQ(update(lists).rebuilt, "");
+  UpdateOptions rebuild;
+  rebuild.rebuild = true;
+  const IndexUpdate again = update(rebuild);
+  EXPECT_EQ(again.rebuilt, "asked for");
+  EXPECT_EQ(again.type.factory, "IVF4,Flat");
+  EXPECT_EQ(again.type.search_parameters, "nprobe=3");
+  UpdateOptions chosen;
+  chosen.type = VectorIndexOptions{};
+  EXPECT_EQ(update(chosen).type.factory, "Flat");
+}
+
+TEST_F(UpdateIndexTest, MendsDamage) {
+  update();
+  add(3);
+  update();
+  const std::string delta = read_file(delta_path(path_));
+  write_file_atomically(delta_path(path_), delta.substr(0, delta.size() / 2));
+  EXPECT_NE(error_of([&] { opened(); }), "");
+  EXPECT_EQ(update().rebuilt, "");  // the delta alone is made again
+  EXPECT_EQ(read_file(delta_path(path_)), delta);
+
+  const std::string base = read_file(path_);
+  write_file_atomically(path_, base.substr(0, base.size() / 2));
+  EXPECT_NE(update().rebuilt.find("cut off"), std::string::npos);
+}
+
+TEST_F(UpdateIndexTest, ReplacesAnIndexOfAnotherOrigin) {
+  update();
+  database_->store_embeddings("newer", database_->embeddings("retriever"));
+  const IndexUpdate made = update_index(path_, *database_, "newer");
+  EXPECT_NE(made.rebuilt.find("another retriever"), std::string::npos);
+  EXPECT_EQ(made.difference.added, 300);
+  EXPECT_EQ(VectorIndex::open(path_, *database_, "newer").count(), 300);
+}
+
+TEST_F(UpdateIndexTest, FollowsDownToNothingAndUpAgain) {
+  update();
+  remove_every(1);
+  EXPECT_NE(error_of([&] { update_index(path_, *database_, "retriever"); }).find("has no vectors"),
+            std::string::npos);
+  EXPECT_EQ(opened().count(), 0);
+  add(5);
+  EXPECT_EQ(update().difference.dropped, 300);
+}
+
+}  // namespace
+}  // namespace remomask
