@@ -44,6 +44,7 @@ MappedFile::~MappedFile() {
 }
 
 std::string describe(nlohmann::json description, std::string_view magic) {
+  description["version"] = kIndexFormat;
   description[kDescriptionChecksum] = content_hash(description.dump());
   std::string text = description.dump();
   const uint64_t length = text.size();
@@ -52,7 +53,7 @@ std::string describe(nlohmann::json description, std::string_view magic) {
 }
 
 DescribedContent split_described(const std::string& path, std::string_view content,
-                                 std::string_view magic, const std::string& remedy) {
+                                 std::string_view magic, const std::string& remedy) try {
   const size_t end = sizeof(uint64_t) + magic.size();
   if (content.size() < end || !content.ends_with(magic)) {
     throw FileError(path, 0, "is no file of an index, or is cut off; " + remedy);
@@ -66,14 +67,17 @@ DescribedContent split_described(const std::string& path, std::string_view conte
       content.substr(0, start),
       nlohmann::json::parse(content.substr(start, static_cast<size_t>(length)), nullptr, false)};
   if (!parts.description.is_object()) throw damaged;
-  // Files of the first release have none.
-  const auto checksum = parts.description.find(kDescriptionChecksum);
-  if (checksum != parts.description.end()) {
-    const nlohmann::json wanted = *checksum;
-    parts.description.erase(checksum);
-    if (wanted != content_hash(parts.description.dump())) throw damaged;
+  const int version = parts.description.value("version", 0);
+  if (version > kIndexFormat) {
+    throw FileError(path, 0, "was made by a newer version of remomask; " + remedy);
   }
+  if (version == 1) return parts;  // the first format had no checksum here
+  const std::string checksum = parts.description.value(kDescriptionChecksum, "");
+  parts.description.erase(kDescriptionChecksum);
+  if (checksum != content_hash(parts.description.dump())) throw damaged;
   return parts;
+} catch (const nlohmann::json::exception&) {  // a field of another type than it should be
+  throw FileError(path, 0, "the index is damaged; " + remedy);
 }
 
 }  // namespace remomask

@@ -22,6 +22,9 @@ class MappedFile {
   size_t size_ = 0;
 };
 
+/// Version of the index files that this program writes, and the newest it reads.
+constexpr int kIndexFormat = 2;
+
 /// A file of the index: a body of binary data, a JSON object that describes it,
 /// its length (8 bytes, little-endian), 8 bytes of magic. The description is at
 /// the end so that other programs can read the body by itself.
@@ -30,11 +33,13 @@ struct DescribedContent {
   nlohmann::json description;
 };
 
-/// What follows behind the body. Adds a checksum of the description to it.
+/// What follows behind the body: the description with the version and a checksum
+/// of itself added.
 std::string describe(nlohmann::json description, std::string_view magic);
 
 /// Takes the content of such a file apart; the body is not checked. Throws
-/// FileError that ends with `remedy` when it is cut off or the description damaged.
+/// FileError that ends with `remedy` when it is cut off, its description damaged,
+/// or its version newer.
 DescribedContent split_described(const std::string& path, std::string_view content,
                                  std::string_view magic, const std::string& remedy);
 

@@ -18,7 +18,6 @@ namespace remomask {
 namespace {
 
 constexpr std::string_view kDeltaMagic = "RMMDELTA";
-constexpr int kDeltaVersion = 1;
 constexpr double kFoldShareOfExact = 0.10, kFoldShareOfApproximate = 0.02;
 constexpr const char* kUpdate = "run: remomask index DB";
 
@@ -144,16 +143,12 @@ void write_index_delta(const std::string& path, const IndexHeader& base, const I
   append_values(body, delta.changes.added);
   append_values(body, delta.changes.dropped);
   append_values(body, delta.changes.vectors);
-  const nlohmann::json description = {{"format", "remomask index delta"},
-                                      {"version", kDeltaVersion},
-                                      {"base", base.checksum},
-                                      {"database", delta.stamp.database_uuid},
-                                      {"generation", delta.stamp.generation},
-                                      {"retriever", delta.stamp.retriever_hash},
-                                      {"added", delta.changes.added.size()},
-                                      {"dropped", delta.changes.dropped.size()},
-                                      {"width", base.width},
-                                      {"checksum", content_hash(body)}};
+  const nlohmann::json description = {
+      {"format", "remomask index delta"},        {"base", base.checksum},
+      {"database", delta.stamp.database_uuid},   {"generation", delta.stamp.generation},
+      {"retriever", delta.stamp.retriever_hash}, {"added", delta.changes.added.size()},
+      {"dropped", delta.changes.dropped.size()}, {"width", base.width},
+      {"checksum", content_hash(body)}};
   write_file_atomically(delta_path(path), body + describe(description, kDeltaMagic));
 }
 
@@ -163,9 +158,6 @@ std::optional<IndexDelta> read_index_delta(const std::string& path, const IndexH
   const std::string content = read_file(file);
   try {
     const auto [whole, description] = split_described(file, content, kDeltaMagic, kUpdate);
-    if (description.at("version").get<int>() > kDeltaVersion) {
-      throw FileError(file, 0, std::string("was made by a newer version of remomask; ") + kUpdate);
-    }
     if (description.at("checksum").get<std::string>() != content_hash(whole)) {
       throw FileError(file, 0, std::string("the index is damaged; ") + kUpdate);
     }

@@ -19,7 +19,6 @@ namespace remomask {
 namespace {
 
 constexpr std::string_view kIndexMagic = "RMMINDEX";
-constexpr int kIndexVersion = 1;
 constexpr const char* kRebuild = "run: remomask index DB --rebuild";
 
 struct ViewReader : faiss::IOReader {
@@ -69,16 +68,13 @@ std::string_view ids_at_end(std::string_view faiss, size_t count) {
 IndexParts split_index_file(const std::string& path, std::string_view content) {
   const DescribedContent parts = split_described(path, content, kIndexMagic, kRebuild);
   const nlohmann::json& description = parts.description;
-  if (description.at("version").get<int>() > kIndexVersion) {
-    throw FileError(path, 0, std::string("was made by a newer version of remomask; ") + kRebuild);
-  }
   IndexParts result;
   IndexHeader& header = result.header;
   header.stamp = {description.at("database").get<std::string>(),
                   description.at("generation").get<int64_t>(),
                   description.at("retriever").get<std::string>()};
   header.type.factory = description.at("factory").get<std::string>();
-  // Files of the first release do not say these.
+  // Version 1 does not say these.
   header.type.requested = description.value("requested", header.type.factory);
   header.type.search_parameters = description.value("search_parameters", "");
   if (description.contains("recall_at_10")) header.type.recall = description.at("recall_at_10");
@@ -167,7 +163,6 @@ std::string write_index_file(const std::string& path, const IndexStamp& stamp,
   const size_t faiss_bytes = writer.add(index);
   const size_t body_bytes = exact ? writer.add(*exact) : faiss_bytes;
   nlohmann::json description = {{"format", "remomask index"},
-                                {"version", kIndexVersion},
                                 {"database", stamp.database_uuid},
                                 {"generation", stamp.generation},
                                 {"retriever", stamp.retriever_hash},

@@ -46,8 +46,41 @@ TEST(EmbedDatabase, StoresEveryClipOnceForEachRetriever) {
   EXPECT_TRUE(torch::allclose(text, torch::tensor(stored[0].text), 1e-4, 1e-4));
 
   database.add_clip(named_clip("three"), walking_motion(40, 3));
-  EXPECT_EQ(embed_database(database, retriever), 3);
+  EXPECT_EQ(embed_database(database, retriever), 1);
+  EXPECT_EQ(embed_database(database, retriever), 0);
   EXPECT_EQ(embed_database(database, untrained_retriever(2)), 3);
+  const auto later = database.embeddings(retriever.hash());
+  ASSERT_EQ(later.size(), 3u);
+  EXPECT_EQ(later[0].motion, stored[0].motion);  // untouched
+  EXPECT_EQ(later[1].parts, stored[1].parts);
+}
+
+TEST(EmbedDatabase, LeavesVeryShortClipsOut) {
+  const TestFolder folder;
+  Database database(folder / "a.sqlite", OpenMode::create);
+  database.add_clip(named_clip("short"), walking_motion(3, 1));
+  database.add_clip(named_clip("long"), walking_motion(4, 2));
+  const Retriever retriever = untrained_retriever(1);
+  EXPECT_EQ(embed_database(database, retriever), 1);
+  EXPECT_EQ(database.embedded_clips(retriever.hash()),
+            std::vector<int64_t>{*database.find_name("long")});
+  EXPECT_EQ(embed_database(database, retriever), 0);
+}
+
+TEST(EmbedDatabase, AStoppedRunKeepsWhatIsDone) {
+  const TestFolder folder;
+  Database database(folder / "a.sqlite", OpenMode::create);
+  for (int i = 0; i < 70; ++i) {
+    database.add_clip(named_clip("clip" + std::to_string(i)), walking_motion(10, i));
+  }
+  const Retriever retriever = untrained_retriever(1);
+  std::stop_source stop;
+  Monitor monitor;
+  monitor.stop = stop.get_token();
+  monitor.progress = [&](const Progress&) { stop.request_stop(); };
+  EXPECT_THROW(embed_database(database, retriever, monitor), Interrupted);
+  EXPECT_EQ(database.embedded_clips(retriever.hash()).size(), 32u);
+  EXPECT_EQ(embed_database(database, retriever), 38);
 }
 
 }  // namespace

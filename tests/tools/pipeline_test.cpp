@@ -138,16 +138,35 @@ TEST_F(PipelineTest, EvaluationsReportTheirProtocol) {
   EXPECT_EQ(generation["physical"]["not_finite"], 0);
 }
 
-TEST_F(PipelineTest, StaleIndexIsRefusedWithTheRemedy) {
+TEST_F(PipelineTest, AnIndexFollowsItsDatabase) {
   fs::copy_file(path("motions.sqlite"), path("copy.sqlite"));
   fs::copy_file(path("motions.sqlite.index"), path("copy.sqlite.index"));
   const std::vector<std::string> search = {
       "search", "walk", "--db", path("copy.sqlite"), "--model", path("run/model.safetensors")};
-  EXPECT_EQ(run_program(search).exit_code, 0);
+  const std::vector<std::string> index = {"index", path("copy.sqlite"), "--model",
+                                          path("run/model.safetensors")};
+  EXPECT_EQ(run_json(search)["clips_without_vectors"], 0);
   run_json({"procedural", "--db", path("copy.sqlite"), "--count", "3", "--seed", "9"});
-  const ProgramResult stale = run_program(search);
-  EXPECT_EQ(stale.exit_code, 1);
-  EXPECT_NE(stale.errors.find("remomask index"), std::string::npos) << stale.errors;
+  EXPECT_EQ(run_json(search)["clips_without_vectors"], 3);
+  const ProgramResult told = run_program(search);
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_NE(told.errors.find("3 clips have no vectors yet"), std::string::npos) << told.errors;
+  EXPECT_NE(told.errors.find("remomask index"), std::string::npos) << told.errors;
+
+  const auto added = run_json(index);
+  EXPECT_EQ(added["embedded"], 3);
+  EXPECT_EQ(added["added"], 3);
+  EXPECT_EQ(added["dropped"], 0);
+  EXPECT_EQ(run_json(search)["clips_without_vectors"], 0);
+  const auto unchanged = run_json(index);
+  EXPECT_EQ(unchanged["embedded"], 0);
+  EXPECT_TRUE(unchanged["rebuilt"].is_null());
+  auto rebuild = index;
+  rebuild.insert(rebuild.end(), {"--rebuild", "--factory", "IVF2,Flat"});
+  const auto rebuilt = run_json(rebuild);
+  EXPECT_EQ(rebuilt["factory"], "IVF2,Flat");
+  EXPECT_GT(rebuilt["recall_at_10"].get<double>(), 0);
+  EXPECT_EQ(rebuilt["clips"], added["clips"]);
 }
 
 TEST_F(PipelineTest, ModelOfAnotherPresetIsRefused) {

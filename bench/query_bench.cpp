@@ -1,0 +1,81 @@
+// A text query from the words to the clips, as `remomask search` does it once it
+// runs: encode the text, search, fetch ten clips of different groups. Captions
+// of the database are the queries, a new one each time; read the lines _p50 and
+// _p95. Floor: reading all motion vectors once.
+//
+// Takes the model that REMOMASK_MODEL names (else models/base.safetensors) and the
+// database that REMOMASK_DATABASE names (else models/procedural.sqlite), indexed
+// for that model.
+
+#include <ATen/core/Tensor.h>
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "bench/machine_peak.h"
+#include "index/search.h"
+#include "nn/model_file.h"
+#include "retriever/retriever.h"
+
+namespace remomask {
+namespace {
+
+constexpr int kQueries = 200;
+
+std::string file_named(const char* variable, const char* shipped) {
+  const char* chosen = std::getenv(variable);
+  return chosen ? chosen : std::string(REMOMASK_SOURCE_DIR) + "/models/" + shipped;
+}
+
+struct Searched {
+  Retriever retriever{load_model(file_named("REMOMASK_MODEL", "base.safetensors")).at("retriever")};
+  Database database{file_named("REMOMASK_DATABASE", "procedural.sqlite"), OpenMode::read_only};
+  VectorIndex index =
+      VectorIndex::open(default_index_path(database.path()), database, retriever.hash());
+  std::vector<std::string> queries;
+
+  Searched() {
+    const std::vector<Clip> clips = database.clips();
+    for (int i = 0; i < kQueries; ++i) {
+      const Clip& clip = clips[clips.size() * static_cast<size_t>(i) / kQueries];
+      queries.push_back(clip.captions.empty() ? clip.name : clip.captions.front());
+    }
+    for (const std::string& query : queries) search(query);  // warm
+  }
+  size_t search(const std::string& text) const {
+    const at::Tensor query = retriever.encode_text({text}).query.contiguous();
+    SearchOptions options;
+    options.collapse = Collapse::groups;
+    return search_database(database, index, query.data_ptr<float>(), 1, options).front().size();
+  }
+};
+
+void text_query(benchmark::State& state) {
+  static const Searched searched;
+  static size_t next = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(searched.search(searched.queries[next++ % kQueries]));
+  }
+  state.SetLabel(std::to_string(searched.index.count()) + " clips");
+  report_floor(state, 4.0 * static_cast<double>(searched.index.count()) * searched.index.width() /
+                          memory_read_rate());
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+BENCHMARK(text_query)
+    ->Unit(benchmark::kMicrosecond)
+    ->UseRealTime()
+    ->Iterations(1)
+    ->Repetitions(kQueries)
+    ->ReportAggregatesOnly(true)
+    ->ComputeStatistics("p50", [](const auto& values) { return quantile(values, 0.50); })
+        -> ComputeStatistics("p95", [](const auto& values) { return quantile(values, 0.95); });
+
+}  // namespace
+}  // namespace remomask
