@@ -74,8 +74,9 @@ IndexParts split_index_file(const std::string& path, std::string_view content) {
                   description.at("generation").get<int64_t>(),
                   description.at("retriever").get<std::string>()};
   header.type.factory = description.at("factory").get<std::string>();
-  // Version 1 does not say these.
-  header.type.requested = description.value("requested", header.type.factory);
+  // Version 1 does not say these; its default was Flat.
+  const std::string& factory = header.type.factory;
+  header.type.requested = description.value("requested", factory == "Flat" ? "auto" : factory);
   header.type.search_parameters = description.value("search_parameters", "");
   if (description.contains("recall_at_10")) header.type.recall = description.at("recall_at_10");
   header.width = description.at("width").get<int>();
