@@ -92,7 +92,10 @@ void require_same_origin(const std::string& path, const IndexStamp& stamp, const
     throw Error(path + ": this index belongs to another database than " + database.path() +
                 "; run: remomask index DB");
   }
-  if (stamp.generation > database.generation()) {
+  // The caller's snapshot may be older than a file that was just written: what
+  // counts is the latest state.
+  if (stamp.generation > database.generation() &&
+      stamp.generation > Database(database.path(), OpenMode::read_only).generation()) {
     throw Error(path + ": this index is of a later state than " + database.path() +
                 " (is that an older copy?); run: remomask index DB");
   }

@@ -1,7 +1,6 @@
 #include "index/search.h"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -96,16 +95,6 @@ std::vector<std::vector<SearchHit>> search_database(const Database& database,
     results.push_back(std::move(hits));
   }
   return results;
-}
-
-int64_t clips_without_vectors(const Database& database, const VectorIndex& index) {
-  const ReadSnapshot snapshot(database);
-  const auto embedded = database.embedded_clips(index.stamp().retriever_hash);
-  const auto& indexed = index.clip_ids();
-  std::vector<int64_t> both;
-  std::set_intersection(embedded.begin(), embedded.end(), indexed.begin(), indexed.end(),
-                        std::back_inserter(both));
-  return database.clip_count() - static_cast<int64_t>(both.size());
 }
 
 }  // namespace remomask

@@ -37,8 +37,4 @@ std::vector<std::vector<SearchHit>> search_database(const Database& database,
                                                     int64_t query_count,
                                                     const SearchOptions& options = {});
 
-/// How many clips of the database no search can find, since the index has no
-/// vector of them.
-int64_t clips_without_vectors(const Database& database, const VectorIndex& index);
-
 }  // namespace remomask

@@ -52,7 +52,7 @@ bool same_type(const IndexType& type, const VectorIndexOptions& options) {
 IndexUpdate update_index(const std::string& path, const Database& database,
                          const std::string& retriever_hash, const UpdateOptions& options,
                          const Monitor& monitor) {
-  // Before the snapshot: the files cannot be of a later state than that.
+  // Before the snapshot: what is written must not be older than what was there.
   auto [pair, reason] = read_pair(path, database, retriever_hash);
   const ReadSnapshot snapshot(database);
   VectorIndexOptions type = options.type.value_or(VectorIndexOptions{});

@@ -131,7 +131,6 @@ VectorIndex VectorIndex::open(const std::string& path, const Database& database,
   IndexDelta delta{file.header.stamp, {}};
   if (auto known = read_index_delta(path, file.header)) delta = std::move(*known);
   IndexSegments segments(std::move(file.index), std::move(file.exact));
-  // After the files: they cannot be of a later state than the snapshot.
   const ReadSnapshot snapshot(database);
   require_same_origin(path, delta.stamp, database, retriever_hash);
   const FollowedState state =
