@@ -1,6 +1,6 @@
 // Top-10 among 1,000,000 vectors of 512 numbers with the type that "auto"
 // chooses: one query at a time, recall@10 against the exact answer beside it.
-// Needs 9 GB of memory while it builds and two minutes of one core; the
+// Needs 8 GB of memory while it builds and two minutes of one core; the
 // vectors are a mixture of 2,000 kinds (unit_vectors.h), queries are new ones of
 // the same mixture. Floor: reading 2 GB once, what exact search needs at least.
 
