@@ -3,13 +3,10 @@
 #include <torch/utils.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
-#include <numeric>
-#include <set>
 
 #include "base/error.h"
-#include "text/caption.h"
+#include "base/hash.h"
 
 namespace remomask {
 
@@ -17,220 +14,167 @@ namespace {
 
 constexpr size_t kEvaluationBatch = 64;
 
-/// [captions, clips]: the caption belongs to the clip, to one of its group, or
-/// is word for word a caption of it.
-at::Tensor correct_pairs(const std::vector<std::string>& captions,
-                         const std::vector<size_t>& caption_clip,
-                         const std::vector<TrainingClip>& clips) {
-  std::map<std::string, std::set<size_t>> clips_with;
-  for (size_t c = 0; c < clips.size(); ++c) {
-    for (const std::string& caption : clips[c].captions) {
-      clips_with[normalise_caption(caption)].insert(c);
-    }
-  }
-  std::map<int, std::vector<size_t>> clips_of_group;
-  for (size_t c = 0; c < clips.size(); ++c) clips_of_group[clips[c].group].push_back(c);
-
-  const at::Tensor correct = torch::zeros(
-      {static_cast<int64_t>(captions.size()), static_cast<int64_t>(clips.size())}, torch::kBool);
-  bool* values = correct.data_ptr<bool>();
-  for (size_t t = 0; t < captions.size(); ++t) {
-    bool* row = values + t * clips.size();
-    for (const size_t c : clips_with[normalise_caption(captions[t])]) row[c] = true;
-    for (const size_t c : clips_of_group[clips[caption_clip[t]].group]) row[c] = true;
-  }
-  return correct;
+at::Tensor places(const std::vector<size_t>& numbers) {
+  return torch::tensor(std::vector<int64_t>(numbers.begin(), numbers.end()), torch::kLong);
 }
 
-/// Queries of one direction.
+/// Queries of one direction, gallery after gallery.
 struct RankedQueries {
   std::vector<LabelledQuery> queries;
   std::vector<double> ranks;
+  std::vector<size_t> batches;  ///< queries of each gallery
   int64_t gallery = 0;
 };
 
 /// Clips of one meaning get the number of the first of them; those without labels
 /// their own.
-at::Tensor meaning_numbers(const std::vector<size_t>& chosen,
-                           const std::vector<TrainingClip>& clips) {
+std::vector<int64_t> meaning_numbers(const std::vector<TrainingClip>& clips) {
   std::map<std::string, int64_t> first_clip;
-  for (size_t clip = clips.size(); clip-- > 0;) {
-    first_clip[clips[clip].meaning] = static_cast<int64_t>(clip);
-  }
   std::vector<int64_t> result;
-  for (const size_t clip : chosen) {
+  for (size_t clip = 0; clip < clips.size(); ++clip) {
+    const auto own = static_cast<int64_t>(clip);
     const std::string& meaning = clips[clip].meaning;
-    result.push_back(meaning.empty() ? static_cast<int64_t>(clip) : first_clip[meaning]);
-  }
-  return torch::tensor(result, torch::kLong);
-}
-
-RankedQueries ranked_queries(const at::Tensor& similarity, const at::Tensor& correct,
-                             const std::vector<size_t>& query_clip,
-                             const std::vector<size_t>& gallery_clip,
-                             const std::vector<TrainingClip>& clips) {
-  RankedQueries result{{}, best_ranks(similarity, correct), similarity.size(1)};
-  const at::Tensor first = similarity.argmax(1);
-  const at::Tensor same = meaning_numbers(query_clip, clips)
-                              .unsqueeze(1)
-                              .eq(meaning_numbers(gallery_clip, clips).unsqueeze(0));
-  const at::Tensor entries = same.sum(1), right = same.logical_and(correct).sum(1);
-  for (size_t i = 0; i < query_clip.size(); ++i) {
-    result.queries.push_back({query_clip[i],
-                              gallery_clip[static_cast<size_t>(first.data_ptr<int64_t>()[i])],
-                              entries.data_ptr<int64_t>()[i], right.data_ptr<int64_t>()[i]});
+    result.push_back(meaning.empty() ? own : first_clip.emplace(meaning, own).first->second);
   }
   return result;
 }
 
-/// The queries whose clip carries `subset` as its label "unseen"; "all": every one.
-RankedQueries queries_of(const RankedQueries& all, const std::string& subset,
-                         const std::vector<TrainingClip>& clips) {
-  RankedQueries chosen;
-  chosen.gallery = all.gallery;
-  for (size_t i = 0; i < all.queries.size(); ++i) {
-    if (subset != "all" && clips[all.queries[i].clip].unseen != subset) continue;
-    chosen.queries.push_back(all.queries[i]);
-    chosen.ranks.push_back(all.ranks[i]);
+/// Adds the queries of one gallery; rows without a correct entry are no queries.
+void rank_gallery(const at::Tensor& similarity, const at::Tensor& correct,
+                  const std::vector<size_t>& query_clip, const std::vector<size_t>& gallery_clip,
+                  const at::Tensor& meanings, RankedQueries& result) {
+  const at::Tensor rows = correct.any(1).nonzero().flatten();
+  const at::Tensor scores = similarity.index_select(0, rows), right = correct.index_select(0, rows);
+  const std::vector<double> ranks = best_ranks(scores, right);
+  result.ranks.insert(result.ranks.end(), ranks.begin(), ranks.end());
+  result.batches.push_back(ranks.size());
+  result.gallery = similarity.size(1);
+  if (ranks.empty()) return;
+  const at::Tensor first = scores.argmax(1);
+  const at::Tensor same = meanings.index_select(0, places(query_clip))
+                              .index_select(0, rows)
+                              .unsqueeze(1)
+                              .eq(meanings.index_select(0, places(gallery_clip)).unsqueeze(0));
+  const at::Tensor entries = same.sum(1), right_entries = same.logical_and(right).sum(1);
+  for (size_t i = 0; i < ranks.size(); ++i) {
+    result.queries.push_back({query_clip[static_cast<size_t>(rows.data_ptr<int64_t>()[i])],
+                              gallery_clip[static_cast<size_t>(first.data_ptr<int64_t>()[i])],
+                              entries.data_ptr<int64_t>()[i],
+                              right_entries.data_ptr<int64_t>()[i]});
   }
-  return chosen;
 }
 
-nlohmann::json figures_json(const RecallFigures& figures, const LabelFigures& labels) {
-  nlohmann::json json = {{"median_rank", figures.median_rank},
-                         {"queries", figures.queries},
-                         {"gallery", figures.gallery}};
-  for (size_t i = 0; i < kRecallRanks.size(); ++i) {
-    json["R@" + std::to_string(kRecallRanks[i])] = figures.recall[i];
+/// The queries whose clip carries `subset` as its label "unseen"; "all": every one.
+DirectionFigures figures_of(const RankedQueries& all, const std::string& subset,
+                            const std::vector<TrainingClip>& clips,
+                            const BootstrapOptions& bootstrap) {
+  std::vector<LabelledQuery> queries;
+  std::vector<double> ranks;
+  std::vector<size_t> batches;
+  size_t next = 0;
+  for (const size_t count : all.batches) {
+    const size_t before = ranks.size();
+    for (const size_t last = next + count; next < last; ++next) {
+      if (subset != "all" && clips[all.queries[next].clip].unseen != subset) continue;
+      queries.push_back(all.queries[next]);
+      ranks.push_back(all.ranks[next]);
+    }
+    batches.push_back(ranks.size() - before);
   }
-  json["first_hit"] = {{"queries", labels.queries},
-                       {"same_content", labels.content},
-                       {"same_content_and_style", labels.meaning}};
-  for (size_t i = 0; i < kRecallRanks.size(); ++i) {
-    json["by_labels_alone"]["R@" + std::to_string(kRecallRanks[i])] = labels.perfect_recall[i];
+  return {recall_figures(ranks, batches, all.gallery, bootstrap), label_figures(queries, clips)};
+}
+
+std::string names_hash(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  std::string lines;
+  for (const std::string& name : names) lines += name + '\n';
+  return content_hash(lines);
+}
+
+ProtocolEvaluation evaluate_protocol(RetrievalProtocol protocol, const EncodedSplit& split,
+                                     const std::vector<TrainingClip>& clips,
+                                     const RetrievalOptions& options) {
+  const ProtocolPlan plan = protocol_plan(protocol, split.captions, clips, options.settings);
+  const at::Tensor meanings = torch::tensor(meaning_numbers(clips), torch::kLong);
+  RankedQueries texts, motions;
+  std::vector<std::string> searched;
+  for (const std::vector<size_t>& gallery : plan.galleries) {
+    std::vector<size_t> captions, caption_clip;
+    for (size_t t = 0; t < split.captions.texts.size(); ++t) {
+      const size_t clip = split.captions.clips[t];
+      if (!std::binary_search(gallery.begin(), gallery.end(), clip)) continue;
+      captions.push_back(t);
+      caption_clip.push_back(clip);
+    }
+    for (const size_t clip : gallery) searched.push_back(clips[clip].name);
+    const at::Tensor rows = places(captions), columns = places(gallery);
+    const at::Tensor similarity =
+        torch::matmul(split.text.index_select(0, rows), split.motion.index_select(0, columns).t());
+    const at::Tensor correct = plan.correct.index_select(0, rows).index_select(1, columns);
+    rank_gallery(similarity, correct, caption_clip, gallery, meanings, texts);
+    rank_gallery(similarity.t().contiguous(), correct.t().contiguous(), gallery, caption_clip,
+                 meanings, motions);
   }
+  ProtocolEvaluation result{
+      protocol, retrieval_definition(protocol, options.settings), names_hash(searched), {}};
+  for (const std::string name : {"all", "take", "pair"}) {
+    const DirectionFigures by_text = figures_of(texts, name, clips, options.bootstrap);
+    if (by_text.recall.queries == 0) continue;
+    result.subsets.push_back({name, by_text, figures_of(motions, name, clips, options.bootstrap)});
+  }
+  return result;
+}
+
+nlohmann::json direction_json(const DirectionFigures& figures) {
+  const RecallFigures& recall = figures.recall;
+  nlohmann::json json = {{"queries", recall.queries}, {"gallery", recall.gallery}};
+  const auto add = [&](const std::string& name, double value, size_t place) {
+    json[name] = value;
+    if (recall.intervals.empty()) return;
+    json["intervals"][name] = {recall.intervals[place].low, recall.intervals[place].high};
+  };
+  for (size_t i = 0; i < kRecallRanks.size(); ++i) {
+    const std::string name = "R@" + std::to_string(kRecallRanks[i]);
+    add(name, recall.recall[i], i);
+    json["by_labels_alone"][name] = figures.labels.perfect_recall[i];
+  }
+  add("median_rank", recall.median_rank, kRecallRanks.size());
+  json["first_hit"] = {{"queries", figures.labels.queries},
+                       {"same_content", figures.labels.content},
+                       {"same_content_and_style", figures.labels.meaning}};
   return json;
 }
 
 }  // namespace
 
-std::vector<double> best_ranks(const at::Tensor& similarity, const at::Tensor& correct) {
-  if (!torch::isfinite(similarity).all().item<bool>()) {
-    throw Error("the similarities are not finite; the retriever is broken, train it again");
-  }
-  const at::Tensor wrong = correct.logical_not();
-  const at::Tensor best =
-      similarity.masked_fill(wrong, -std::numeric_limits<float>::infinity()).amax(1, true);
-  const at::Tensor above = similarity.gt(best).logical_and(wrong).sum(1).to(torch::kDouble);
-  const at::Tensor ties = similarity.eq(best).logical_and(wrong).sum(1).to(torch::kDouble);
-  const at::Tensor ranks = (above + 0.5 * ties + 1).contiguous();
-  return {ranks.data_ptr<double>(), ranks.data_ptr<double>() + ranks.numel()};
-}
-
-RecallFigures recall_figures(const std::vector<double>& ranks, int64_t gallery) {
-  RecallFigures figures;
-  figures.queries = static_cast<int64_t>(ranks.size());
-  figures.gallery = gallery;
-  if (ranks.empty()) return figures;
-  for (size_t i = 0; i < kRecallRanks.size(); ++i) {
-    const auto within =
-        std::count_if(ranks.begin(), ranks.end(), [&](double r) { return r <= kRecallRanks[i]; });
-    figures.recall[i] = 100.0 * static_cast<double>(within) / static_cast<double>(ranks.size());
-  }
-  std::vector<double> sorted = ranks;
-  std::sort(sorted.begin(), sorted.end());
-  const size_t half = sorted.size() / 2;
-  figures.median_rank = sorted.size() % 2 ? sorted[half] : (sorted[half - 1] + sorted[half]) / 2;
-  return figures;
-}
-
-double chance_within(int64_t k, int64_t correct, int64_t entries) {
-  double none = 1;
-  for (int64_t i = 0; i < k && i < entries; ++i) {
-    none *= std::max(0.0, static_cast<double>(entries - correct - i)) /
-            static_cast<double>(entries - i);
-  }
-  return 1 - none;
-}
-
-LabelFigures label_figures(const std::vector<LabelledQuery>& queries,
-                           const std::vector<TrainingClip>& clips) {
-  LabelFigures figures;
-  for (const LabelledQuery& query : queries) {
-    const TrainingClip &wanted = clips[query.clip], &found = clips[query.first];
-    if (wanted.meaning.empty()) continue;
-    ++figures.queries;
-    if (found.content == wanted.content) ++figures.content;
-    if (found.meaning == wanted.meaning) ++figures.meaning;
-    for (size_t i = 0; i < kRecallRanks.size(); ++i) {
-      figures.perfect_recall[i] +=
-          chance_within(kRecallRanks[i], query.correct_of_them, query.same_meaning);
-    }
-  }
-  const double to_percent = 100.0 / static_cast<double>(std::max<int64_t>(1, figures.queries));
-  figures.content *= to_percent;
-  figures.meaning *= to_percent;
-  for (double& recall : figures.perfect_recall) recall *= to_percent;
-  return figures;
-}
-
-std::string retrieval_protocol(bool all_captions) {
-  return std::string("full gallery of the split, cosine; ") +
-         (all_captions ? "all captions" : "first caption") +
-         " of each clip; clips of the same group and clips with the identical normalised caption "
-         "count as correct, best rank; ties averaged";
-}
-
 void to_json(nlohmann::json& json, const RetrievalEvaluation& evaluation) {
-  json = {{"protocol", evaluation.protocol}};
-  for (const RetrievalSubset& subset : evaluation.subsets) {
-    json[subset.name] = {
-        {"text_to_motion", figures_json(subset.text_to_motion, subset.text_to_motion_labels)},
-        {"motion_to_text", figures_json(subset.motion_to_text, subset.motion_to_text_labels)}};
-  }
-}
-
-RetrievalEvaluation evaluate_vectors(const at::Tensor& text, const at::Tensor& motion,
-                                     const std::vector<std::string>& captions,
-                                     const std::vector<size_t>& caption_clip,
-                                     const std::vector<TrainingClip>& clips, bool all_captions) {
-  const at::Tensor similarity = torch::matmul(text, motion.t());
-  const at::Tensor correct = correct_pairs(captions, caption_clip, clips);
-  std::vector<size_t> every_clip(clips.size());
-  std::iota(every_clip.begin(), every_clip.end(), 0);
-  const RankedQueries texts = ranked_queries(similarity, correct, caption_clip, every_clip, clips);
-  // Motions without a correct caption can be no queries.
-  const at::Tensor places = correct.any(0).nonzero().flatten();
-  const RankedQueries motions =
-      ranked_queries(similarity.t().index_select(0, places), correct.t().index_select(0, places),
-                     {places.data_ptr<int64_t>(), places.data_ptr<int64_t>() + places.numel()},
-                     caption_clip, clips);
-  RetrievalEvaluation evaluation{retrieval_protocol(all_captions), {}};
-  for (const std::string name : {"all", "take", "pair"}) {
-    const RankedQueries by_text = queries_of(texts, name, clips);
-    const RankedQueries by_motion = queries_of(motions, name, clips);
-    if (by_text.queries.empty()) continue;
-    evaluation.subsets.push_back({name, recall_figures(by_text.ranks, by_text.gallery),
-                                  recall_figures(by_motion.ranks, by_motion.gallery),
-                                  label_figures(by_text.queries, clips),
-                                  label_figures(by_motion.queries, clips)});
-  }
-  return evaluation;
-}
-
-RetrievalEvaluation evaluate_retrieval(const Retriever& retriever,
-                                       const std::vector<TrainingClip>& clips, bool all_captions,
-                                       const Monitor& monitor) {
-  std::vector<std::string> captions;
-  std::vector<size_t> caption_clip;
-  for (size_t c = 0; c < clips.size(); ++c) {
-    const size_t count =
-        all_captions ? clips[c].captions.size() : std::min<size_t>(1, clips[c].captions.size());
-    for (size_t k = 0; k < count; ++k) {
-      captions.push_back(clips[c].captions[k]);
-      caption_clip.push_back(c);
+  json = {{"clips", evaluation.clips},
+          {"split_hash", evaluation.split_hash},
+          {"captions", evaluation.captions},
+          {"bootstrap",
+           {{"resamples", evaluation.bootstrap.resamples},
+            {"level", evaluation.bootstrap.level},
+            {"seed", evaluation.bootstrap.seed}}}};
+  for (const ProtocolEvaluation& protocol : evaluation.protocols) {
+    nlohmann::json& figures = json["protocols"][retrieval_protocol_name(protocol.protocol)];
+    figures = {{"definition", protocol.definition}, {"gallery_hash", protocol.gallery_hash}};
+    for (const RetrievalSubset& subset : protocol.subsets) {
+      figures[subset.name] = {{"text_to_motion", direction_json(subset.text_to_motion)},
+                              {"motion_to_text", direction_json(subset.motion_to_text)}};
     }
   }
+}
+
+std::string clip_set_hash(const std::vector<TrainingClip>& clips) {
+  std::vector<std::string> names;
+  for (const TrainingClip& clip : clips) names.push_back(clip.name);
+  return names_hash(std::move(names));
+}
+
+EncodedSplit encode_split(const Retriever& retriever, const std::vector<TrainingClip>& clips,
+                          bool all_captions, const Monitor& monitor) {
+  EncodedSplit split{caption_set(clips, all_captions), {}, {}};
+  const std::vector<std::string>& captions = split.captions.texts;
   if (captions.empty()) throw Error("the clips to evaluate have no captions");
   const double total = static_cast<double>(captions.size() + clips.size());
   std::vector<at::Tensor> text, motion;
@@ -254,8 +198,31 @@ RetrievalEvaluation evaluate_retrieval(const Retriever& retriever,
     motion.push_back(retriever.encode_motion(chosen).global);
     progress(captions.size() + first + chosen.size());
   }
-  return evaluate_vectors(torch::cat(text), torch::cat(motion), captions, caption_clip, clips,
-                          all_captions);
+  split.text = torch::cat(text);
+  split.motion = torch::cat(motion);
+  return split;
+}
+
+RetrievalEvaluation evaluate_encoded(const EncodedSplit& split,
+                                     const std::vector<TrainingClip>& clips,
+                                     const RetrievalOptions& options) {
+  RetrievalEvaluation evaluation;
+  evaluation.clips = clips.size();
+  evaluation.split_hash = clip_set_hash(clips);
+  evaluation.captions = std::string(options.all_captions ? "all captions" : "first caption") +
+                        " of each clip; cosine; best rank of the correct entries, ties averaged";
+  evaluation.bootstrap = options.bootstrap;
+  for (const RetrievalProtocol protocol : options.protocols) {
+    evaluation.protocols.push_back(evaluate_protocol(protocol, split, clips, options));
+  }
+  return evaluation;
+}
+
+RetrievalEvaluation evaluate_retrieval(const Retriever& retriever,
+                                       const std::vector<TrainingClip>& clips,
+                                       const RetrievalOptions& options, const Monitor& monitor) {
+  return evaluate_encoded(encode_split(retriever, clips, options.all_captions, monitor), clips,
+                          options);
 }
 
 }  // namespace remomask

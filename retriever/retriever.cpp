@@ -37,7 +37,7 @@ TextEncoding Retriever::encode_text(const std::vector<std::string>& captions) co
   if (captions.empty()) throw Error("there is no caption to encode");
   const TokenBatch tokens = impl_->model->text_tower().tokenize(captions);
   TextVectors vectors = impl_->model->encode_text(tokens.ids, tokens.mask);
-  return {vectors.states, tokens.mask, vectors.query};
+  return {vectors.states, tokens.mask, vectors.query, vectors.parts};
 }
 
 MotionEncoding Retriever::encode_motion(const std::vector<const Features*>& clips) const {

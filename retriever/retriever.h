@@ -15,6 +15,7 @@ struct TextEncoding {
   at::Tensor states;  ///< [B, S, text_width] token states of the text tower
   at::Tensor mask;    ///< [B, S] bool, true where a token exists
   at::Tensor query;   ///< [B, E] vector in the shared space, L2-normalised
+  at::Tensor parts;   ///< [B, 6, P] what the words say about each part, each L2-normalised
 };
 
 struct MotionEncoding {

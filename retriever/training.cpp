@@ -222,11 +222,16 @@ ModelStage train_retriever(const std::vector<TrainingClip>& train,
   if (!val_clips.empty()) {
     trainer.set_validation(options.validation_every, [&](int64_t) {
       const Retriever retriever(retriever_stage(model, config));
-      const RetrievalSubset all = evaluate_retrieval(retriever, val_clips, false).subsets.front();
-      return std::map<std::string, double>{{"t2m_R@1", all.text_to_motion.recall.front()},
-                                           {"t2m_R@10", all.text_to_motion.recall.back()},
-                                           {"m2t_R@1", all.motion_to_text.recall.front()},
-                                           {"m2t_R@10", all.motion_to_text.recall.back()}};
+      RetrievalOptions measure;
+      measure.protocols = {RetrievalProtocol::duplicates};
+      measure.bootstrap.resamples = 0;
+      const RetrievalEvaluation evaluation = evaluate_retrieval(retriever, val_clips, measure);
+      const RetrievalSubset& all = evaluation.protocols.front().subsets.front();
+      const RecallFigures &t2m = all.text_to_motion.recall, &m2t = all.motion_to_text.recall;
+      return std::map<std::string, double>{{"t2m_R@1", t2m.recall.front()},
+                                           {"t2m_R@10", t2m.recall.back()},
+                                           {"m2t_R@1", m2t.recall.front()},
+                                           {"m2t_R@10", m2t.recall.back()}};
     });
   }
   trainer.set_after_step([&](int64_t) { model.after_step(); });

@@ -112,7 +112,8 @@ std::string normalise_caption(std::string_view caption) {
     }
   }
   finish_word();
-  while (!words.empty() && (words.back() == '.' || words.back() == ' ')) words.pop_back();
+  // Networks that were trained on captions without them are thrown off by "!" and "?".
+  words.erase(words.find_last_not_of(" .!?,;:") + 1);
   return words;
 }
 

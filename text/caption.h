@@ -12,7 +12,7 @@ inline constexpr size_t kMostCaptionBytes = 8192;
 /// The canonical form that equality of captions and the tokenizer work on:
 /// lower case (ASCII, Latin, Greek, Cyrillic), typographic punctuation and
 /// whitespace as ASCII, one space between words, whole numbers 0 to 20 as
-/// words, no period at the end, invalid UTF-8 left out. Idempotent. May be
+/// words, no . ! ? , ; : at the end, invalid UTF-8 left out. Idempotent. May be
 /// empty.
 std::string normalise_caption(std::string_view caption);
 

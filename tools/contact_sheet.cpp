@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "tools/figure_drawing.h"
+#include "tools/png_canvas.h"
 
 namespace remomask {
 
@@ -18,11 +17,6 @@ constexpr double kTitleHeight = 34, kSubtitleHeight = 24, kTimesHeight = 26;
 constexpr double kFigureHeight = 250;  // pixels for the tallest pose
 constexpr double kShownHeight = 2.05;  // metres that fit into it, grows for high jumps
 constexpr double kOnionShare = 0.30;   // of the card's width
-
-struct CairoDeleter {
-  void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-};
 
 void check_sheet(const std::vector<SheetRow>& rows, const SheetOptions& options) {
   if (rows.empty()) throw Error("a contact sheet needs at least one motion");
@@ -47,41 +41,6 @@ void check_sheet(const std::vector<SheetRow>& rows, const SheetOptions& options)
 double card_height(const SheetRow& row) {
   return 2 * kPadding + kTitleHeight + (row.subtitle.empty() ? 0 : kSubtitleHeight) +
          kFigureHeight + kTimesHeight;
-}
-
-void rounded_rectangle(cairo_t* cairo, double x, double y, double width, double height, double r) {
-  const double quarter = std::acos(0.0);
-  cairo_new_path(cairo);
-  cairo_arc(cairo, x + width - r, y + r, r, -quarter, 0);
-  cairo_arc(cairo, x + width - r, y + height - r, r, 0, quarter);
-  cairo_arc(cairo, x + r, y + height - r, r, quarter, 2 * quarter);
-  cairo_arc(cairo, x + r, y + r, r, 2 * quarter, 3 * quarter);
-  cairo_close_path(cairo);
-}
-
-/// Text from its left baseline, cut with an ellipsis where it is too wide.
-void show_text(cairo_t* cairo, double x, double y, const std::string& text, double size, bool bold,
-               double grey, double max_width) {
-  cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
-                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(cairo, size);
-  std::string shown = text;
-  cairo_text_extents_t extents;
-  cairo_text_extents(cairo, shown.c_str(), &extents);
-  std::string kept = text;
-  while (extents.x_advance > max_width && !kept.empty()) {
-    // Whole UTF-8 characters go.
-    do {
-      const bool inside = (static_cast<unsigned char>(kept.back()) & 0xC0) == 0x80;
-      kept.pop_back();
-      if (!inside) break;
-    } while (!kept.empty());
-    shown = kept + "\u2026";
-    cairo_text_extents(cairo, shown.c_str(), &extents);
-  }
-  cairo_set_source_rgb(cairo, grey, grey, grey * 1.08);
-  cairo_move_to(cairo, x, y);
-  cairo_show_text(cairo, shown.c_str());
 }
 
 int frame_of(int pose, int poses, int frames) {
@@ -194,11 +153,6 @@ void draw_row(cairo_t* cairo, const SheetRow& row, const SheetOptions& options, 
              kFigureHeight + kTimesHeight + 20);
 }
 
-cairo_status_t append_png(void* closure, const unsigned char* data, unsigned int length) {
-  static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
-  return CAIRO_STATUS_SUCCESS;
-}
-
 }  // namespace
 
 void write_contact_sheet(const std::string& png_path, const std::vector<SheetRow>& rows,
@@ -207,33 +161,19 @@ void write_contact_sheet(const std::string& png_path, const std::vector<SheetRow
   const double heading = options.heading.empty() ? 0 : 52;
   double height = 2 * kMargin + heading - kCardGap;
   for (const SheetRow& row : rows) height += card_height(row) + kCardGap;
-  const std::unique_ptr<cairo_surface_t, CairoDeleter> surface(cairo_image_surface_create(
-      CAIRO_FORMAT_RGB24, options.width, static_cast<int>(std::ceil(height))));
-  const std::unique_ptr<cairo_t, CairoDeleter> cairo(cairo_create(surface.get()));
-  cairo_set_source_rgb(cairo.get(), 0.955, 0.95, 0.94);
-  cairo_paint(cairo.get());
+  const PngCanvas canvas(options.width, height);
+  cairo_t* cairo = canvas.cairo();
   double y = kMargin;
   if (heading > 0) {
-    show_text(cairo.get(), kMargin + 4, y + 26, options.heading, 27, true, 0.16,
+    show_text(cairo, kMargin + 4, y + 26, options.heading, 27, true, 0.16,
               options.width - 2 * kMargin);
     y += heading;
   }
   for (const SheetRow& row : rows) {
-    draw_row(cairo.get(), row, options, y);
+    draw_row(cairo, row, options, y);
     y += card_height(row) + kCardGap;
   }
-  cairo_surface_flush(surface.get());
-  std::string png;
-  cairo_status_t status = cairo_status(cairo.get());
-  if (status == CAIRO_STATUS_SUCCESS) {
-    status = cairo_surface_write_to_png_stream(surface.get(), append_png, &png);
-  }
-  if (status != CAIRO_STATUS_SUCCESS) {
-    // Cairo's surfaces end at 32767 pixels.
-    throw Error(png_path + ": cannot draw the contact sheet of " + std::to_string(rows.size()) +
-                " rows: " + cairo_status_to_string(status) + "; draw fewer rows on one sheet");
-  }
-  write_file_atomically(png_path, png);
+  canvas.write(png_path);
 }
 
 }  // namespace remomask

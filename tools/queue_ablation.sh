@@ -20,14 +20,14 @@ for seed in 1 2 3; do
       "$remomask" train retriever --db "$database" -o "$run" $settings --queues "$queues" \
         --seed "$seed" >/dev/null
     [ -f "$run/test.txt" ] || {
-      "$remomask" --quiet evaluate retrieval --db "$database" \
+      "$remomask" --quiet evaluate retrieval --protocol duplicates --db "$database" \
         --model "$run/retriever.safetensors" >"$run/test.tmp"
       mv "$run/test.tmp" "$run/test.txt"
     }
   done
 done
 echo "\`remomask train retriever $settings\`, seeds 1 to 3, mean (least to most), percent;"
-sed -n 1p "$folder/none-1/test.txt"
+sed -n 2,4p "$folder/none-1/test.txt"
 echo
 echo "| queues | queries | direction | R@1 | R@3 | R@10 | first hit: content | content and style |"
 echo "|---|---|---|---|---|---|---|---|"
@@ -41,8 +41,8 @@ for subset in take pair all; do
           if (count[i] == 1 || value < least[i]) least[i] = value
           if (count[i] == 1 || value > most[i]) most[i] = value
         }
-        $1 == subset && $2 == direction && $3 == "R@1" { note(1, $4); note(2, $8); note(3, $12) }
-        $1 == subset && $2 == direction && $3 == "first" { note(4, $7); note(5, $12) }
+        $1 == subset && $3 == direction { note(1, $4); note(2, $8); note(3, $12) }
+        $1 == subset && $2 == "labels" && $4 == direction { note(4, $5); note(5, $6) }
         END {
           printf "| %s | %s | %s |", queues, subset, direction
           for (i = 1; i <= 5; ++i) printf " %.1f (%.1f-%.1f) |", sum[i] / count[i], least[i], most[i]

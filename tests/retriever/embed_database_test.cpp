@@ -3,19 +3,11 @@
 #include <gtest/gtest.h>
 #include <torch/utils.h>
 
-#include "retriever/retriever_model.h"
 #include "retriever_test_tools.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
 namespace {
-
-Retriever untrained_retriever(int64_t seed) {
-  torch::manual_seed(static_cast<uint64_t>(seed));
-  const RetrieverConfig config = tiny_retriever_config();
-  RetrieverModel model(config);
-  return Retriever({"retriever", config, module_tensors(model)});
-}
 
 TEST(EmbedDatabase, StoresEveryClipOnceForEachRetriever) {
   const TestFolder folder;

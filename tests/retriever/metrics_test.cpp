@@ -20,7 +20,7 @@ TEST(RetrievalMetrics, RanksByHand) {
 }
 
 TEST(RetrievalMetrics, RecallAndMedianByHand) {
-  const RecallFigures figures = recall_figures({1, 1.5, 2, 4, 11, 6}, 20);
+  const RecallFigures figures = recall_figures({1, 1.5, 2, 4, 11, 6}, {6}, 20, {});
   EXPECT_DOUBLE_EQ(figures.recall[0], 100.0 / 6);      // 1
   EXPECT_DOUBLE_EQ(figures.recall[1], 100.0 * 3 / 6);  // 1, 1.5, 2
   EXPECT_DOUBLE_EQ(figures.recall[2], 100.0 * 3 / 6);
@@ -29,6 +29,16 @@ TEST(RetrievalMetrics, RecallAndMedianByHand) {
   EXPECT_DOUBLE_EQ(figures.median_rank, 3);
   EXPECT_EQ(figures.queries, 6);
   EXPECT_EQ(figures.gallery, 20);
+  ASSERT_EQ(figures.intervals.size(), kRecallRanks.size() + 1);
+  EXPECT_LT(figures.intervals[1].low, 50);
+  EXPECT_GT(figures.intervals[1].high, 50);
+  EXPECT_TRUE(recall_figures({1}, {1}, 20, {0, 0.95, 0}).intervals.empty());
+}
+
+TEST(RetrievalMetrics, MediansOfSeveralGalleriesAreAveraged) {
+  const RecallFigures figures = recall_figures({1, 3, 4, 1, 1}, {2, 0, 3}, 7, {});
+  EXPECT_DOUBLE_EQ(figures.recall[0], 60);
+  EXPECT_DOUBLE_EQ(figures.median_rank, (2 * 2. + 3 * 1.) / 5);
 }
 
 TEST(RetrievalMetrics, ConstantSimilarityIsChance) {
@@ -65,17 +75,18 @@ TEST(RetrievalMetrics, SameCaptionAndSameGroupAreCorrectAndSubsetsKeepTheGallery
     clips[i].unseen = i < 2 ? "take" : "pair";
   }
   // Text i is nearest to motion i + 1 (mod 4): right for 0 and 2 alone.
-  const auto text = torch::eye(4), motion = torch::eye(4).roll(1, 0);
-  const auto evaluation =
-      evaluate_vectors(text, motion.t().contiguous(), captions, {0, 1, 2, 3}, clips, false);
-  ASSERT_EQ(evaluation.subsets.size(), 3u);
-  EXPECT_EQ(evaluation.subsets[0].name, "all");
-  EXPECT_DOUBLE_EQ(evaluation.subsets[0].text_to_motion.recall[0], 50);
-  EXPECT_EQ(evaluation.subsets[1].name, "take");
-  EXPECT_EQ(evaluation.subsets[1].text_to_motion.queries, 2);
-  EXPECT_EQ(evaluation.subsets[1].text_to_motion.gallery, 4);
-  EXPECT_EQ(evaluation.subsets[2].motion_to_text.queries, 2);
-  EXPECT_NE(evaluation.protocol.find("full gallery"), std::string::npos);
+  RetrievalOptions options;
+  options.protocols = {RetrievalProtocol::duplicates};
+  const auto evaluation = evaluate_encoded(
+      {caption_set(clips, false), torch::eye(4), torch::eye(4).roll(1, 0)}, clips, options);
+  const auto& subsets = evaluation.protocols.at(0).subsets;
+  ASSERT_EQ(subsets.size(), 3u);
+  EXPECT_EQ(subsets[0].name, "all");
+  EXPECT_DOUBLE_EQ(subsets[0].text_to_motion.recall.recall[0], 50);
+  EXPECT_EQ(subsets[1].name, "take");
+  EXPECT_EQ(subsets[1].text_to_motion.recall.queries, 2);
+  EXPECT_EQ(subsets[1].text_to_motion.recall.gallery, 4);
+  EXPECT_EQ(subsets[2].motion_to_text.recall.queries, 2);
 }
 
 }  // namespace

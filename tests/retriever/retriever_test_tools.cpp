@@ -1,6 +1,9 @@
 #include "retriever_test_tools.h"
 
+#include <torch/utils.h>
+
 #include "base/random.h"
+#include "retriever/retriever_model.h"
 #include "text/text_tower.h"
 
 namespace remomask {
@@ -53,6 +56,13 @@ RetrieverConfig tiny_retriever_config() {
   text.vocabulary = train_wordpiece(captions, 300);
   config.text_tower = text;
   return config;
+}
+
+Retriever untrained_retriever(uint64_t seed) {
+  torch::manual_seed(seed);
+  const RetrieverConfig config = tiny_retriever_config();
+  RetrieverModel model(config);
+  return Retriever({"retriever", config, module_tensors(model)});
 }
 
 }  // namespace remomask

@@ -5,6 +5,7 @@
 
 #include "db/training_set.h"
 #include "retriever/config.h"
+#include "retriever/retriever.h"
 
 namespace remomask {
 
@@ -17,5 +18,8 @@ std::vector<TrainingClip> separable_clips(int kinds, int repeats, uint64_t seed)
 
 /// Preset tiny with a text tower over the captions of separable_clips().
 RetrieverConfig tiny_retriever_config();
+
+/// With random weights.
+Retriever untrained_retriever(uint64_t seed);
 
 }  // namespace remomask

@@ -125,11 +125,21 @@ TEST_F(PipelineTest, GeneratedFileCarriesItsEvidence) {
 }
 
 TEST_F(PipelineTest, EvaluationsReportTheirProtocol) {
-  const auto retrieval = run_json([&] {
-    auto arguments = with_model({"evaluate", "retrieval"});
-    return arguments;
-  }());
-  EXPECT_FALSE(retrieval["protocol"].get<std::string>().empty());
+  const auto retrieval = run_json(with_model({"evaluate", "retrieval"}));
+  EXPECT_EQ(retrieval["split_hash"].get<std::string>().size(), 32u);
+  EXPECT_EQ(retrieval["protocols"].size(), 5u);
+  for (const auto& protocol : retrieval["protocols"]) {
+    EXPECT_FALSE(protocol["definition"].get<std::string>().empty());
+    const auto& figures = protocol["all"]["text_to_motion"];
+    EXPECT_LE(figures["intervals"]["R@1"][0].get<double>(), figures["R@1"].get<double>());
+  }
+  const auto chosen =
+      run_json(with_model({"evaluate", "retrieval", "--protocol", "all,small-batch"}));
+  EXPECT_EQ(chosen["protocols"].size(), 2u);
+  const ProgramResult unknown =
+      run_program(with_model({"evaluate", "retrieval", "--protocol", "best"}));
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_NE(unknown.errors.find("small-batch"), std::string::npos);
   const auto tokenizer = run_json(with_model({"evaluate", "tokenizer"}));
   EXPECT_GT(tokenizer["all_levels"]["mpjpe"].get<double>(), 0);
   const auto generation = run_json(with_model(

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+#include "db/training_set.h"
+#include "tools/program.h"
+#include "tools/workspace.h"
+
+namespace remomask {
+
+/// --model, --db, --split and --source: what is measured.
+struct EvaluationInput {
+  FileOptions files;
+  std::string split = "test";
+  std::vector<std::string> sources;
+
+  void add(CLI::App& command);
+  /// Clips of `wanted_split` of the sources, without mirror twins that are not
+  /// stored. Throws FileError when there are none.
+  std::vector<TrainingClip> load(const std::string& wanted_split, FeatureMode mode) const;
+  std::vector<TrainingClip> load(FeatureMode mode) const { return load(split, mode); }
+};
+
+/// The sub-commands of `remomask evaluate`.
+void register_evaluate_retrieval(CLI::App& parent, Program& program);
+void register_evaluate_calibration(CLI::App& parent, Program& program);
+void register_evaluate_moments(CLI::App& parent, Program& program);
+void register_evaluate_tokenizer(CLI::App& parent, Program& program);
+void register_evaluate_generation(CLI::App& parent, Program& program);
+
+}  // namespace remomask
