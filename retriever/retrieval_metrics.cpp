@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -171,35 +172,47 @@ std::string clip_set_hash(const std::vector<TrainingClip>& clips) {
   return names_hash(std::move(names));
 }
 
+std::pair<at::Tensor, at::Tensor> encode_texts(const Retriever& retriever,
+                                               const std::vector<std::string>& texts,
+                                               const std::function<void(size_t)>& progress) {
+  std::vector<at::Tensor> queries, parts;
+  for (size_t first = 0; first < texts.size(); first += kEvaluationBatch) {
+    const size_t last = std::min(texts.size(), first + kEvaluationBatch);
+    const TextEncoding encoding =
+        retriever.encode_text({texts.begin() + static_cast<std::ptrdiff_t>(first),
+                               texts.begin() + static_cast<std::ptrdiff_t>(last)});
+    queries.push_back(encoding.query);
+    parts.push_back(encoding.parts);
+    progress(last);
+  }
+  return {torch::cat(queries), torch::cat(parts)};
+}
+
 EncodedSplit encode_split(const Retriever& retriever, const std::vector<TrainingClip>& clips,
                           bool all_captions, const Monitor& monitor) {
-  EncodedSplit split{caption_set(clips, all_captions), {}, {}};
+  EncodedSplit split;
+  split.captions = caption_set(clips, all_captions);
   const std::vector<std::string>& captions = split.captions.texts;
   if (captions.empty()) throw Error("the clips to evaluate have no captions");
   const double total = static_cast<double>(captions.size() + clips.size());
-  std::vector<at::Tensor> text, motion;
   const auto progress = [&](size_t done) {
     if (monitor.stop_requested()) throw Interrupted("the evaluation of the retriever was stopped");
     monitor.report({"evaluate retriever", static_cast<double>(done), total, ""});
   };
-  for (size_t first = 0; first < captions.size(); first += kEvaluationBatch) {
-    const size_t last = std::min(captions.size(), first + kEvaluationBatch);
-    text.push_back(retriever
-                       .encode_text({captions.begin() + static_cast<std::ptrdiff_t>(first),
-                                     captions.begin() + static_cast<std::ptrdiff_t>(last)})
-                       .query);
-    progress(last);
-  }
+  std::vector<at::Tensor> motion, motion_parts;
+  std::tie(split.text, split.text_parts) = encode_texts(retriever, captions, progress);
   for (size_t first = 0; first < clips.size(); first += kEvaluationBatch) {
     std::vector<const Features*> chosen;
     for (size_t c = first; c < std::min(clips.size(), first + kEvaluationBatch); ++c) {
       chosen.push_back(&clips[c].features);
     }
-    motion.push_back(retriever.encode_motion(chosen).global);
+    const MotionEncoding encoding = retriever.encode_motion(chosen);
+    motion.push_back(encoding.global);
+    motion_parts.push_back(encoding.parts);
     progress(captions.size() + first + chosen.size());
   }
-  split.text = torch::cat(text);
   split.motion = torch::cat(motion);
+  split.motion_parts = torch::cat(motion_parts);
   return split;
 }
 

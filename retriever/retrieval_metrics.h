@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/progress.h"
@@ -56,9 +58,17 @@ std::string clip_set_hash(const std::vector<TrainingClip>& clips);
 /// `motion` to clips[c].
 struct EncodedSplit {
   CaptionSet captions;
-  at::Tensor text;    ///< [T, E]
-  at::Tensor motion;  ///< [N, E]
+  at::Tensor text;               ///< [T, E]
+  at::Tensor motion;             ///< [N, E]
+  at::Tensor text_parts = {};    ///< [T, 6, P]
+  at::Tensor motion_parts = {};  ///< [N, 6, P]
 };
+
+/// Vectors [T, E] and part vectors [T, 6, P] of texts, which must not be none;
+/// `progress` is told how many are done.
+std::pair<at::Tensor, at::Tensor> encode_texts(const Retriever& retriever,
+                                               const std::vector<std::string>& texts,
+                                               const std::function<void(size_t)>& progress);
 
 /// Throws Error when no clip has a caption.
 EncodedSplit encode_split(const Retriever& retriever, const std::vector<TrainingClip>& clips,

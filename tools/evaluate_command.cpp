@@ -37,6 +37,7 @@ void register_evaluate(CLI::App& app, Program& program) {
   register_evaluate_retrieval(*command, program);
   register_evaluate_calibration(*command, program);
   register_evaluate_moments(*command, program);
+  register_evaluate_queries(*command, program);
   register_evaluate_tokenizer(*command, program);
   register_evaluate_generation(*command, program);
 }

@@ -27,6 +27,7 @@ struct EvaluationInput {
 void register_evaluate_retrieval(CLI::App& parent, Program& program);
 void register_evaluate_calibration(CLI::App& parent, Program& program);
 void register_evaluate_moments(CLI::App& parent, Program& program);
+void register_evaluate_queries(CLI::App& parent, Program& program);
 void register_evaluate_tokenizer(CLI::App& parent, Program& program);
 void register_evaluate_generation(CLI::App& parent, Program& program);
 

@@ -23,6 +23,10 @@ TEST(Caption, NormalisesByTable) {
       {"turns 180 degrees in 3.5 s, the 2nd time", "turns 180 degrees in 3.5 s, the 2nd time"},
       {"21 steps", "21 steps"},
       {"jumps...", "jumps"},
+      {"Jump!", "jump"},
+      {"who walks 4 times ?!", "who walks four times"},
+      {"kick 2:", "kick two"},
+      {"\"wait!\" he said", "\"wait!\" he said"},
       {"jumps\u2026 again", "jumps... again"},
       {"ZERO\u200bWIDTH \ufeffmark", "zerowidth mark"},
       {"\u00c4RGER \u0394\u03a3 \u0416", "\u00e4rger \u03b4\u03c3 \u0436"},
@@ -30,13 +34,14 @@ TEST(Caption, NormalisesByTable) {
       {"broken \xff\xc3 bytes", "broken bytes"},
       {"", ""},
       {" . ", ""},
+      {"?!", ""},
   };
   for (const CaptionCase& c : cases) EXPECT_EQ(normalise_caption(c.input), c.expected) << c.input;
 }
 
 TEST(Caption, IsIdempotent) {
   for (const char* text :
-       {"A person walks 4 Steps.", "a\u2026b .", "\u201cX\u201d 7...", "12, 13"}) {
+       {"A person walks 4 Steps.", "a\u2026b .", "\u201cX\u201d 7...", "12, 13", "kick 2!"}) {
     const std::string once = normalise_caption(text);
     EXPECT_EQ(normalise_caption(once), once);
   }
