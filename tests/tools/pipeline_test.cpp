@@ -140,6 +140,14 @@ TEST_F(PipelineTest, EvaluationsReportTheirProtocol) {
       run_program(with_model({"evaluate", "retrieval", "--protocol", "best"}));
   EXPECT_EQ(unknown.exit_code, 1);
   EXPECT_NE(unknown.errors.find("small-batch"), std::string::npos);
+  const auto calibration =
+      run_json(with_model({"evaluate", "calibration", "--plot", path("calibration.png")}));
+  EXPECT_GE(calibration["calibration"]["pairs"].get<int>(), 10);
+  EXPECT_EQ(read_file(path("calibration.png")).substr(1, 3), "PNG");
+  const auto moments = run_json(with_model({"evaluate", "moments", "--tasks", "3"}));
+  EXPECT_GT(moments["alone"]["mean_iou"].get<double>(), 0);
+  const auto queries = run_json(with_model({"evaluate", "queries", "--resamples", "0"}));
+  EXPECT_EQ(queries["forms"][1]["overlap"], 100);  // upper case changes nothing
   const auto tokenizer = run_json(with_model({"evaluate", "tokenizer"}));
   EXPECT_GT(tokenizer["all_levels"]["mpjpe"].get<double>(), 0);
   const auto generation = run_json(with_model(
