@@ -47,7 +47,11 @@ class HitList {
 
   bool full() const { return static_cast<int>(answer_.hits.size()) == query_.k; }
 
+  /// In a ranking by similarity nothing behind it passes either.
+  bool refused_last() const { return refused_last_; }
+
   void add(const VectorHit& found) {
+    refused_last_ = false;
     const Clip& clip = scene_.state->clip(found.clip_id);
     if (query_.grouped && !seen_.insert(clip.group).second) return;
     MotionHit hit;
@@ -56,10 +60,12 @@ class HitList {
     if (query_.grouped) {
       hit.folded = static_cast<int>(scene_.candidates(scene_.state->groups.at(clip.group))) - 1;
     }
-    if (query_.least_similarity && found.similarity < *query_.least_similarity) {
+    if (scene_.calibration) hit.probability = scene_.calibration->probability(found.similarity);
+    if (is_refused(hit)) {
       if (!answer_.refused || found.similarity > answer_.refused->similarity) {
         answer_.refused = std::move(hit);
       }
+      refused_last_ = true;
       return;
     }
     hit.rank = static_cast<int>(answer_.hits.size()) + 1;
@@ -76,10 +82,16 @@ class HitList {
   }
 
  private:
+  bool is_refused(const MotionHit& hit) const {
+    return (query_.least_similarity && hit.similarity < *query_.least_similarity) ||
+           (query_.least_probability && hit.probability < *query_.least_probability);
+  }
+
   const SearchScene& scene_;
   const SearchQuery& query_;
   std::set<std::string> seen_;
   SearchAnswer answer_;
+  bool refused_last_ = false;
 };
 
 /// All clips by similarity, and those with boost words by these, as one ranking.
@@ -124,9 +136,7 @@ SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
       list.add(hit);
     }
     const bool exhausted = static_cast<int64_t>(found.size()) < wanted || wanted == count;
-    const bool below = query.least_similarity && !found.empty() &&
-                       found.back().similarity < *query.least_similarity;
-    if (list.full() || exhausted || below) return list.finish();
+    if (list.full() || exhausted || list.refused_last()) return list.finish();
   }
 }
 

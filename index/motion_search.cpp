@@ -1,5 +1,6 @@
 #include "index/motion_search.h"
 
+#include <ATen/ops/from_blob.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +18,8 @@
 #include "index/vector_index.h"
 #include "motion/features.h"
 #include "nn/model_file.h"
+#include "retriever/calibration.h"
+#include "retriever/moments.h"
 #include "retriever/retriever.h"
 #include "text/caption.h"
 
@@ -27,6 +30,7 @@ namespace {
 constexpr int kLeastQueryFrames = 4;   // as clips that are embedded
 constexpr int kMostQueryFrames = 200;  // of the longest clip
 constexpr int64_t kCaptionClips = 50;  // whose captions are compared one by one
+constexpr size_t kMomentHits = 50;     // whose windows are embedded
 
 std::vector<float> numbers(const at::Tensor& tensor) {
   const at::Tensor flat = tensor.contiguous();
@@ -129,6 +133,12 @@ struct MotionSearch::Impl {
     scene.captions = state->captions;
     scene.allowed = allowed_clips(query, sentence);
     scene.boosted = boosted_clips(query.boost_words);
+    if (!query.motion && query.like_clip.empty()) scene.calibration = calibration();
+    if (query.least_probability && !scene.calibration) {
+      throw Error(database.path() +
+                  ": has no calibration of this retriever, so that nothing is known of "
+                  "probabilities; run: remomask evaluate calibration --db DB --store");
+    }
     if (!query.like_clip.empty()) {
       scene.like = database.embedding(retriever.hash(), stored_clip(query.like_clip));
       if (!scene.like) {
@@ -137,6 +147,12 @@ struct MotionSearch::Impl {
       }
     }
     return scene;
+  }
+
+  std::optional<Calibration> calibration() const {
+    const auto text = database.fact(calibration_fact(retriever.hash()));
+    if (!text) return std::nullopt;
+    return parse_calibration(nlohmann::json::parse(*text, nullptr, false));
   }
 
   /// [E] of one caption.
@@ -156,6 +172,34 @@ struct MotionSearch::Impl {
         extract_features_all_frames(motion, humanml_skeleton(), retriever.feature_mode());
     const MotionEncoding encoding = retriever.encode_motion({&features});
     return {0, numbers(encoding.global[0]), numbers(encoding.parts[0]), {}};
+  }
+
+  /// The motion of a hit; nothing when the clip was removed meanwhile.
+  std::optional<Motion> hit_motion(const Clip& clip) const {
+    const std::scoped_lock lock(mutex);
+    const ReadSnapshot snapshot(database);
+    if (database.find_name(clip.name) != clip.id) return std::nullopt;
+    return database.motion(clip.id);
+  }
+
+  void find_moments(const LinearQuery& query, std::vector<MotionHit>& hits) const {
+    std::vector<float> values = query.global;
+    const at::Tensor vector = at::from_blob(values.data(), {static_cast<int64_t>(values.size())});
+    for (size_t i = 0; i < std::min(hits.size(), kMomentHits); ++i) {
+      const auto motion = hit_motion(hits[i].clip);
+      if (!motion) continue;
+      const Skeleton& skeleton =
+          hits[i].clip.skeleton == kit_skeleton().name ? kit_skeleton() : humanml_skeleton();
+      const Features features =
+          extract_features_all_frames(*motion, skeleton, retriever.feature_mode());
+      const auto windows = moment_windows(features.frames);
+      const auto found =
+          best_moments(vector, windows, encode_moments(retriever, features, windows));
+      if (found.empty()) continue;
+      const Moment& best = found.front();
+      hits[i].moment = {best.window.first / skeleton.fps, best.window.last / skeleton.fps,
+                        best.similarity};
+    }
   }
 
   QueryVectors vectors(const SearchQuery& query, const Sentence& sentence,
@@ -183,7 +227,10 @@ SearchAnswer MotionSearch::search(const SearchQuery& query) const {
   const Need need = query.parts.empty() ? Need::index : Need::bodies;
   const Sentence sentence = parse_sentence(query.text);
   const SearchScene scene = impl_->scene(query, sentence, need);
-  return collect_hits(scene, query, linear_query(impl_->vectors(query, sentence, scene), query));
+  const LinearQuery vectors = linear_query(impl_->vectors(query, sentence, scene), query);
+  SearchAnswer answer = collect_hits(scene, query, vectors);
+  if (query.moments) impl_->find_moments(vectors, answer.hits);
+  return answer;
 }
 
 std::vector<CaptionHit> MotionSearch::captions_for(const SearchQuery& query) const {

@@ -73,6 +73,18 @@ void check_query(const SearchQuery& query) {
     throw Error("body parts are compared with those of a motion; give one (--like, --like-clip)");
   }
   parse_body_parts(query.parts);
+  if (query.least_probability) {
+    if (!(*query.least_probability >= 0 && *query.least_probability <= 1)) {
+      throw Error(fmt::format("{:g} is no probability; it is a number from 0 to 1",
+                              *query.least_probability));
+    }
+    if (moving) {
+      throw Error("probabilities are known of sentences alone; limit the similarity instead");
+    }
+  }
+  if (query.moments && !query.parts.empty()) {
+    throw Error("moments are found with the whole body; leave the body parts away");
+  }
   check_weight(query.boost_weight, "words");
   if (worded && moving) {
     check_weight(query.text_weight, "sentence");

@@ -28,6 +28,10 @@ struct SearchQuery {
   int k = 10;
   bool grouped = true;                     ///< of each Clip::group only the best clip
   std::optional<double> least_similarity;  ///< hits below are refused
+  /// The same by MotionHit::probability; of a sentence alone, where the database
+  /// keeps a calibration of the retriever.
+  std::optional<double> least_probability;
+  bool moments = false;  ///< say where in the clip, for the first 50 hits; not with parts
 };
 
 /// Numbers of the parts (order of body_parts(), ascending) from their names

@@ -9,11 +9,21 @@
 
 namespace remomask {
 
+/// A stretch of a clip.
+struct HitMoment {
+  double start = 0, end = 0;  ///< seconds from the start of the clip
+  double similarity = 0;      ///< of the query to this stretch
+};
+
 struct MotionHit {
   int rank = 0;  ///< from 1
   Clip clip;
   float similarity = 0;  ///< to the query, -1 .. 1, see linear_query()
-  int folded = 0;        ///< further clips of its group that pass the filter and are not listed
+  /// Share of hits of this similarity that are right, of a sentence alone and
+  /// where the database keeps a calibration of the retriever.
+  std::optional<double> probability;
+  std::optional<HitMoment> moment;  ///< where in the clip, when it was asked for
+  int folded = 0;  ///< further clips of its group that pass the filter and are not listed
 };
 
 struct SearchAnswer {

@@ -9,6 +9,7 @@
 #include "db/database.h"
 #include "index/vector_index.h"
 #include "index/vector_table.h"
+#include "retriever/calibration.h"
 
 namespace remomask {
 
@@ -30,6 +31,7 @@ struct SearchScene {
   std::shared_ptr<const VectorTable> bodies, captions;
   std::optional<std::vector<int64_t>> allowed;  ///< ids that pass the filter, ascending
   std::vector<int64_t> boosted;                 ///< have boost words, best first
+  std::optional<Calibration> calibration;       ///< of queries by a sentence alone
   std::optional<ClipEmbedding> like;            ///< vectors of SearchQuery::like_clip
 
   const std::vector<int64_t>* limit() const { return allowed ? &*allowed : nullptr; }

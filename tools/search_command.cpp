@@ -53,6 +53,10 @@ void add_result_options(CLI::App& command, SearchCommandOptions& options) {
                    "list windows, mirror copies and duplicates of a motion one by one");
   command.add_option("--least-similarity", options.query.least_similarity,
                      "leave out what is less similar (cosine)");
+  command.add_option("--least-probability", options.query.least_probability,
+                     "leave out what is less probably right, by the calibration that \"remomask "
+                     "evaluate calibration --store\" keeps in the database");
+  command.add_flag("--moments", options.query.moments, "say where in each clip");
 }
 
 SearchQuery complete_query(const SearchCommandOptions& options) {
@@ -86,30 +90,46 @@ nlohmann::json query_json(const SearchCommandOptions& options) {
 nlohmann::json motion_hit_json(const MotionHit& hit) {
   nlohmann::json json = hit_json({hit.clip, hit.similarity, hit.rank});
   json["folded"] = hit.folded;
+  json["tags"] = hit.clip.tags;
+  if (hit.probability) json["probability"] = *hit.probability;
+  if (hit.moment) {
+    json["moment"] = {{"start", hit.moment->start},
+                      {"end", hit.moment->end},
+                      {"similarity", hit.moment->similarity}};
+  }
   return json;
 }
 
-void print_answer(const SearchAnswer& answer, const SearchQuery& query) {
+/// "0.713", with a probability "0.713 (82 %)".
+std::string score_text(const MotionHit& hit) {
+  std::string text = fmt::format("{:.3f}", hit.similarity);
+  if (hit.probability) text += fmt::format(" ({:.0f} %)", 100 * *hit.probability);
+  return text;
+}
+
+void print_hit(const MotionHit& hit) {
+  std::string where = fmt::format("{:5.1f} s", clip_seconds(hit.clip));
+  if (hit.moment) where += fmt::format(", {:.1f} to {:.1f} s", hit.moment->start, hit.moment->end);
+  fmt::print("{:3}  {}  {}  {:<32} {}{}\n", hit.rank, score_text(hit), where, hit.clip.name,
+             hit.clip.captions.empty() ? "" : hit.clip.captions.front(),
+             hit.folded > 0 ? fmt::format(" (+{} of the same motion)", hit.folded) : "");
+}
+
+void print_answer(const SearchAnswer& answer) {
   if (answer.candidates == 0) {
     fmt::print("no clip passes the filters\n");
   } else if (answer.hits.empty() && answer.refused) {
-    fmt::print("nothing fits: the most similar of {} clips is {} with {:.3f}, below {:g}\n",
-               answer.candidates, answer.refused->clip.name, answer.refused->similarity,
-               *query.least_similarity);
+    fmt::print("nothing fits: the most similar of {} clips is {} with {}, below the limit\n",
+               answer.candidates, answer.refused->clip.name, score_text(*answer.refused));
   }
-  for (const MotionHit& hit : answer.hits) {
-    fmt::print("{:3}  {:.3f}  {:5.1f} s  {:<32} {}{}\n", hit.rank, hit.similarity,
-               clip_seconds(hit.clip), hit.clip.name,
-               hit.clip.captions.empty() ? "" : hit.clip.captions.front(),
-               hit.folded > 0 ? fmt::format(" (+{} of the same motion)", hit.folded) : "");
-  }
+  for (const MotionHit& hit : answer.hits) print_hit(hit);
 }
 
 void search_clips(const SearchCommandOptions& options, Program& program) {
   const SearchQuery query = complete_query(options);
   const SearchAnswer answer = open_search(options).search(query);
   if (!program.json) {
-    print_answer(answer, query);
+    print_answer(answer);
     if (answer.unsearched > 0) {
       program.warn(
           fmt::format("{} clips have no vectors yet and were not searched; run: remomask "

@@ -13,7 +13,10 @@
 #include <thread>
 
 #include "motion/body_parts.h"
+#include "motion/features.h"
 #include "nn/model_file.h"
+#include "retriever/calibration.h"
+#include "retriever/moments.h"
 #include "retriever/retriever.h"
 #include "tests/db/db_test_tools.h"
 #include "tests/index/index_test_tools.h"
@@ -380,6 +383,51 @@ TEST_F(MotionSearchTest, SeesWhatOthersHaveChanged) {
   EXPECT_NE(error_of([&] { search.search(query); }).find("'nobody'"), std::string::npos);
 }
 
+TEST_F(MotionSearchTest, ProbabilitiesAreThoseOfTheStoredCalibration) {
+  const std::string path = *folder_ / "calibrated.sqlite";
+  Database database(path, OpenMode::create);
+  for (const char* name : {"a", "b", "c", "d", "e"}) add_test_clip(database, named_clip(name));
+  store_random_vectors(database, 3);
+  VectorIndex::build(database, retriever_->hash()).save(path + ".index");
+  const MotionSearch search(kModel, path);
+  SearchQuery query;
+  query.text = "a person walks";
+  const SearchAnswer plain = search.search(query);
+  ASSERT_EQ(plain.hits.size(), 5u);
+  EXPECT_FALSE(plain.hits[0].probability);
+  query.least_probability = 0.5;
+  EXPECT_NE(error_of([&] { search.search(query); }).find("remomask evaluate calibration"),
+            std::string::npos);
+
+  // Right from the second best hit on, half right below it.
+  const double high = plain.hits[1].similarity, low = plain.hits[2].similarity;
+  const Calibration calibration =
+      fit_calibration({low - 1, low, low, high}, {false, false, true, true});
+  database.set_fact(calibration_fact(retriever_->hash()), nlohmann::json(calibration).dump());
+  query.least_probability.reset();
+  const SearchAnswer answer = search.search(query);
+  for (const MotionHit& hit : answer.hits) {
+    EXPECT_DOUBLE_EQ(hit.probability.value(), calibration.probability(hit.similarity));
+  }
+  EXPECT_DOUBLE_EQ(*answer.hits[0].probability, 1);
+  EXPECT_DOUBLE_EQ(*answer.hits[2].probability, 0.5);
+  query.least_probability = 0.75;
+  const SearchAnswer limited = search.search(query);
+  ASSERT_EQ(limited.hits.size(), 2u);
+  EXPECT_EQ(limited.refused->clip.name, answer.hits[2].clip.name);
+  query.least_probability = 1.5;
+  EXPECT_NE(error_of([&] { search.search(query); }).find("no probability"), std::string::npos);
+
+  SearchQuery like;
+  like.like_clip = "a";
+  EXPECT_FALSE(search.search(like).hits.at(0).probability);
+  like.least_probability = 0.5;
+  EXPECT_NE(error_of([&] { search.search(like); }).find("sentences alone"), std::string::npos);
+  database.set_fact(calibration_fact(retriever_->hash()), "{]");
+  query.least_probability.reset();
+  EXPECT_NE(error_of([&] { search.search(query); }), "");
+}
+
 TEST_F(MotionSearchTest, AnswersSeveralThreadsAlike) {
   SearchQuery query;
   query.text = "a person kicks";
@@ -403,7 +451,7 @@ TEST_F(MotionSearchTest, AnswersSeveralThreadsAlike) {
   EXPECT_EQ(failures, std::vector<int>(4, 0));
 }
 
-TEST_F(MotionSearchTest, AStoredMotionFindsItselfInTheShippedDatabase) {
+TEST_F(MotionSearchTest, StoredMotionsAndMomentsOfTheShippedDatabase) {
   const MotionSearch shipped(kModel, kModels + "procedural.sqlite");
   const Database database(kModels + "procedural.sqlite", OpenMode::read_only);
   SearchQuery query;
@@ -418,7 +466,26 @@ TEST_F(MotionSearchTest, AStoredMotionFindsItselfInTheShippedDatabase) {
       EXPECT_NEAR(answer.hits[0].similarity, 1, 1e-3);
     }
   }
+  query.moments = true;
+  EXPECT_NE(error_of([&] { shipped.search(query); }).find("whole body"), std::string::npos);
   query.parts.clear();
+  SearchQuery jump;
+  jump.text = "a person jumps";
+  jump.moments = true;
+  jump.k = 3;
+  const at::Tensor text = retriever_->encode_text({jump.text}).query[0];
+  for (const MotionHit& hit : shipped.search(jump).hits) {
+    const Features features = extract_features_all_frames(
+        database.motion(hit.clip.id), humanml_skeleton(), retriever_->feature_mode());
+    const auto windows = moment_windows(features.frames);
+    const Moment best =
+        best_moments(text, windows, encode_moments(*retriever_, features, windows)).at(0);
+    ASSERT_TRUE(hit.moment);
+    EXPECT_DOUBLE_EQ(hit.moment->start, best.window.first / 20.0);
+    EXPECT_DOUBLE_EQ(hit.moment->end, best.window.last / 20.0);
+    EXPECT_NEAR(hit.moment->similarity, best.similarity, 1e-4);
+    EXPECT_LE(hit.moment->end, hit.clip.frames / 20.0);
+  }
   EXPECT_FALSE(shipped.captions_for(query).empty());
   query.motion = walking_motion(201, 1);
   EXPECT_NE(error_of([&] { shipped.search(query); }).find("10.05 s"), std::string::npos);

@@ -84,6 +84,9 @@ TEST(SearchCommand, RefusesBadQueriesClearly) {
       {{"search", "walk", "--captions"}, "captions are looked up for"},
       {{"search", "--", "-walk -run"}, "not wanted"},
       {{"search", "walk", "--boost-words", "..."}, "no word"},
+      {{"search", "walk", "--least-probability", "2"}, "no probability"},
+      {{"search", "walk", "--least-probability", "0.5"}, "evaluate calibration"},
+      {{"search", "--like-clip", kStored, "--parts", "arms", "--moments"}, "whole body"},
   };
   for (const auto& [arguments, expected] : cases) {
     const std::string message = failure(arguments);
