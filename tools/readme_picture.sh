@@ -1,0 +1,16 @@
+#!/bin/sh
+# Draws docs/generated.png, the picture of the README, with the shipped model.
+#   tools/readme_picture.sh [OUTPUT.png]
+set -eu
+cd "$(dirname "$0")/.."
+output=${1:-docs/generated.png}
+remomask=${REMOMASK:-build/release/tools/remomask}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+number=0
+for prompt in "a person walks forward with energy" "someone raises both hands above the head" \
+  "a person runs forward" "the person bows politely"; do
+  number=$((number + 1))
+  "$remomask" --quiet generate "$prompt" --seconds 4.4 --seed 3 -o "$folder/$number.bvh" >/dev/null
+done
+"$remomask" --quiet sheet "$folder"/[1-4].bvh -o "$output" >/dev/null
