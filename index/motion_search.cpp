@@ -66,8 +66,8 @@ struct MotionSearch::Impl {
   }
 
   void read_state() const {
-    state = std::make_shared<SearchState>(
-        VectorIndex::open(index_path, database, retriever.hash()), database.clips());
+    state = std::make_shared<SearchState>(VectorIndex::open(index_path, database, retriever.hash()),
+                                          database.clips());
   }
 
   void refresh() const {
