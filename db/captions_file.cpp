@@ -26,13 +26,7 @@ class CaptionLine {
     entry.line = line_;
     entry.clip = text("clip", true);
     if (entry.clip.empty()) fail("the clip has no name");
-    if (const auto captions = json_.find("captions"); captions != json_.end()) {
-      if (!captions->is_array()) fail("\"captions\" must be a list of texts");
-      for (const auto& caption : *captions) {
-        if (!caption.is_string()) fail("\"captions\" must be a list of texts");
-        entry.captions.push_back(caption.get<std::string>());
-      }
-    }
+    entry.captions = texts("captions");
     if (const auto labels = json_.find("labels"); labels != json_.end()) {
       if (!labels->is_object()) fail("\"labels\" must be a JSON object");
       entry.labels = *labels;
@@ -42,6 +36,14 @@ class CaptionLine {
     if (entry.split != "train" && entry.split != "val" && entry.split != "test" &&
         entry.split != "none") {
       fail("unknown split '" + split + "'; use train, val, test or none");
+    }
+    entry.name = text("name", false);
+    entry.group = text("group", false);
+    entry.licence = text("licence", false);
+    entry.tags = texts("tags");
+    if (const auto canonical = json_.find("canonical"); canonical != json_.end()) {
+      if (!canonical->is_boolean()) fail("\"canonical\" must be true or false");
+      entry.canonical = canonical->get<bool>();
     }
     return entry;
   }
@@ -59,6 +61,19 @@ class CaptionLine {
     }
     if (!value->is_string()) fail(std::string("\"") + key + "\" must be a text");
     return value->get<std::string>();
+  }
+
+  std::vector<std::string> texts(const char* key) const {
+    std::vector<std::string> list;
+    const auto values = json_.find(key);
+    if (values == json_.end()) return list;
+    const std::string complaint = std::string("\"") + key + "\" must be a list of texts";
+    if (!values->is_array()) fail(complaint);
+    for (const auto& value : *values) {
+      if (!value.is_string()) fail(complaint);
+      list.push_back(value.get<std::string>());
+    }
+    return list;
   }
 
   const std::string& path_;

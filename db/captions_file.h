@@ -13,11 +13,17 @@ struct CaptionEntry {
   std::vector<std::string> captions;
   nlohmann::json labels = nlohmann::json::object();
   std::string split = "none";
+  std::string name, group, licence;  ///< of the clip; empty: as the import chooses
+  std::vector<std::string> tags;
+  /// The file holds stored positions, which are taken as they are: labels that
+  /// say how a file is read were of the file it once came from.
+  bool canonical = false;
   long line = 0;
 };
 
 /// Captions of a folder of motion files: JSON Lines of
-/// {"clip": "...", "captions": ["..."], "labels": {...}, "split": "train|val|test|none"}.
+/// {"clip": "...", "captions": ["..."], "labels": {...}, "split": "train|val|test|none"},
+/// and, as an export writes them, "name", "group", "licence", "tags", "canonical".
 class CaptionsFile {
  public:
   CaptionsFile() = default;

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "motion/motion_file.h"
+#include "motion/npy.h"
 #include "motion/skeleton_map.h"
 
 namespace remomask {
@@ -103,6 +104,21 @@ LoadedMotion load_with_hint(const SourceFile& file, MotionFileOptions options,
   return loaded;
 }
 
+/// What an export wrote: canonical already, exactly so in npy.
+Motion load_stored_motion(const std::string& path) {
+  MotionFileOptions options;
+  options.up_axis = 'Y';
+  if (fs::path(path).extension() != ".npy") return load_motion_file(path, options).motion;
+  NpyArray array = read_npy(path);
+  const auto joints = static_cast<size_t>(humanml_skeleton().joints());
+  if (array.shape.size() != 3 || array.shape[1] != joints || array.shape[2] != 3) {
+    throw FileError(path, 0, "is not frames x 22 x 3 positions, though it is called canonical");
+  }
+  Motion motion(static_cast<int>(array.shape[0]), humanml_skeleton().joints());
+  motion.positions = std::move(array.values);
+  return motion;
+}
+
 }  // namespace
 
 MotionFolder::MotionFolder(const ImportOptions& options) : MotionSource(options) {
@@ -166,7 +182,13 @@ void MotionFolder::match_captions() {
 std::string MotionFolder::fingerprint(size_t i) const {
   std::string parts = content_hash(read_file(files_[i].path)) + options_fingerprint();
   if (const CaptionEntry* entry = described_[i]) {
-    const nlohmann::json description = {entry->captions, entry->labels, entry->split};
+    nlohmann::json description = {entry->captions, entry->labels, entry->split};
+    // Only where it is used: the fingerprints of other data sets stay.
+    if (entry->canonical || !entry->name.empty() || !entry->group.empty() ||
+        !entry->licence.empty() || !entry->tags.empty()) {
+      description.push_back(
+          {entry->name, entry->group, entry->licence, entry->tags, entry->canonical});
+    }
     parts += description.dump();
   }
   return content_hash(parts);
@@ -184,7 +206,7 @@ std::vector<PreparedClip> MotionFolder::prepare(size_t i,
   MotionFileOptions reading;
   if (const CaptionEntry* entry = described_[i]) {
     const ReadingLabels labels(captions_.path(), *entry);
-    reading = labels.options();
+    if (!entry->canonical) reading = labels.options();
     clip.captions = entry->captions;
     clip.labels = entry->labels;
     clip.split = entry->split;
@@ -193,6 +215,14 @@ std::vector<PreparedClip> MotionFolder::prepare(size_t i,
     // keeps its number in every conversion.
     if (const auto original = labels.text("duplicate_of"); !original.empty()) clip.group = original;
     if (const auto trial = labels.text("trial"); !trial.empty()) clip.group = "trial/" + trial;
+    if (!entry->name.empty()) clip.name = entry->name;
+    if (!entry->licence.empty()) clip.licence = entry->licence;
+    if (!entry->group.empty()) clip.group = entry->group;
+    clip.tags = entry->tags;
+    if (entry->canonical) {
+      return cut_into_clips(clip, load_stored_motion(files_[i].path), humanml_skeleton(),
+                            window_options());
+    }
   }
   if (!options_.skeleton_map.empty()) reading.skeleton_map = options_.skeleton_map;
   const LoadedMotion loaded = options_.skeleton_map.empty()

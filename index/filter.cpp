@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 
 #include "base/error.h"
 
@@ -41,34 +42,60 @@ bool label_equals(const nlohmann::json& label, const std::string& value) {
   return false;
 }
 
+bool contains(const std::vector<std::string>& list, const std::string& value) {
+  return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+/// `unit` follows each number, for example " s".
+void check_range(const char* what, const char* unit, const std::optional<double>& least,
+                 const std::optional<double>& most) {
+  if (!least || !most || *least <= *most) return;
+  throw Error(fmt::format("the smallest {} ({}{}) is above the largest ({}{}); exchange them", what,
+                          *least, unit, *most, unit));
+}
+
+template <typename HasIt>
+void check_known(const std::vector<Clip>& clips, const std::string& what, HasIt has_it) {
+  if (std::any_of(clips.begin(), clips.end(), has_it)) return;
+  throw Error("no clip has " + what + "; check how it is written");
+}
+
 void check_filter(const std::vector<Clip>& clips, const ClipFilter& filter) {
   for (const std::string& split : filter.splits) {
     if (split != "train" && split != "val" && split != "test" && split != "none") {
       throw Error("unknown split '" + split + "'; use train, val, test or none");
     }
   }
-  if (filter.min_seconds && filter.max_seconds && *filter.min_seconds > *filter.max_seconds) {
-    throw Error(fmt::format("the shortest length ({} s) is above the longest ({} s); exchange them",
-                            *filter.min_seconds, *filter.max_seconds));
-  }
+  check_range("length", " s", filter.min_seconds, filter.max_seconds);
+  check_range("speed", " m/s", filter.min_speed, filter.max_speed);
   for (const LabelCondition& condition : filter.labels) {
-    const bool known = std::any_of(clips.begin(), clips.end(), [&](const Clip& clip) {
+    check_known(clips, "a label '" + condition.key + "'", [&](const Clip& clip) {
       return find_label(clip.labels, condition.key) != nullptr;
     });
-    if (!known) {
-      throw Error("no clip has a label '" + condition.key + "'; check the name of the label");
-    }
+  }
+  for (const std::string& tag : filter.tags) {
+    check_known(clips, "the tag '" + tag + "'",
+                [&](const Clip& clip) { return contains(clip.tags, tag); });
+  }
+  for (const std::string& licence : filter.licences) {
+    check_known(clips, "the licence '" + licence + "'",
+                [&](const Clip& clip) { return clip.licence == licence; });
   }
 }
 
+bool is_within(double value, const std::optional<double>& least,
+               const std::optional<double>& most) {
+  return (!least || value >= *least) && (!most || value <= *most);
+}
+
 bool clip_matches(const Clip& clip, const ClipFilter& filter) {
-  if (!filter.splits.empty() &&
-      std::find(filter.splits.begin(), filter.splits.end(), clip.split) == filter.splits.end()) {
-    return false;
+  if (!filter.splits.empty() && !contains(filter.splits, clip.split)) return false;
+  if (!filter.licences.empty() && !contains(filter.licences, clip.licence)) return false;
+  if (!is_within(clip_seconds(clip), filter.min_seconds, filter.max_seconds)) return false;
+  if (!is_within(clip.speed, filter.min_speed, filter.max_speed)) return false;
+  for (const std::string& tag : filter.tags) {
+    if (!contains(clip.tags, tag)) return false;
   }
-  const double seconds = clip_seconds(clip);
-  if (filter.min_seconds && seconds < *filter.min_seconds) return false;
-  if (filter.max_seconds && seconds > *filter.max_seconds) return false;
   if (filter.exclude_mirrored && clip.mirrored) return false;
   if (filter.excluded_clips.contains(clip.id)) return false;
   if (filter.excluded_groups.contains(clip.group)) return false;
@@ -89,13 +116,36 @@ LabelCondition parse_label_condition(const std::string& text) {
 }
 
 bool ClipFilter::empty() const {
-  return splits.empty() && labels.empty() && !min_seconds && !max_seconds &&
+  return splits.empty() && labels.empty() && tags.empty() && licences.empty() && !min_seconds &&
+         !max_seconds && !min_speed && !max_speed && caption_query.empty() &&
          excluded_groups.empty() && excluded_clips.empty() && !exclude_mirrored;
 }
 
 double clip_seconds(const Clip& clip) { return clip.frames / kClipFramesPerSecond; }
 
+std::vector<int64_t> matching_clips(const Database& database, const ClipFilter& filter) {
+  const ReadSnapshot snapshot(database);
+  return matching_clips(database, database.clips(), filter);
+}
+
+std::vector<int64_t> matching_clips(const Database& database, const std::vector<Clip>& clips,
+                                    const ClipFilter& filter) {
+  ClipFilter others = filter;
+  others.caption_query.clear();
+  std::vector<int64_t> ids = matching_clips(clips, others);
+  if (filter.caption_query.empty()) return ids;
+  std::vector<int64_t> worded, both;
+  for (const CaptionMatch& match : database.match_captions(filter.caption_query)) {
+    worded.push_back(match.clip_id);
+  }
+  std::sort(worded.begin(), worded.end());
+  std::set_intersection(ids.begin(), ids.end(), worded.begin(), worded.end(),
+                        std::back_inserter(both));
+  return both;
+}
+
 std::vector<int64_t> matching_clips(const std::vector<Clip>& clips, const ClipFilter& filter) {
+  if (!filter.caption_query.empty()) throw Error("a caption query can be asked of a database only");
   check_filter(clips, filter);
   std::vector<int64_t> ids;
   for (const Clip& clip : clips) {

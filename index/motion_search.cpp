@@ -92,7 +92,7 @@ struct MotionSearch::Impl {
     }
     // Ranks need all clips in their exact order: no approximate index for boosts.
     if (filter.empty() && query.boost_words.empty()) return std::nullopt;
-    return matching_clips(state->clips, filter);
+    return matching_clips(database, state->clips, filter);
   }
 
   /// The clips with any of the words, best first.

@@ -75,7 +75,7 @@ std::vector<std::vector<SearchHit>> search_database(const Database& database,
                 ": the index belongs to another database; run: remomask index DB");
   }
   std::optional<std::vector<int64_t>> allowed;
-  if (!options.filter.empty()) allowed = matching_clips(database.clips(), options.filter);
+  if (!options.filter.empty()) allowed = matching_clips(database, options.filter);
   const std::vector<int64_t>* limit = allowed ? &*allowed : nullptr;
 
   ClipReader clips(database, index);

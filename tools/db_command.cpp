@@ -4,8 +4,11 @@ namespace remomask {
 
 void register_db(CLI::App& app, Program& program) {
   CLI::App* group = add_command(app, "db", "look after a motion database: list, change, check ...",
-                                "remomask db upgrade motions.sqlite");
+                                "remomask db list motions.sqlite --words \"turns left\"");
   group->require_subcommand(1);
+  register_db_list(*group, program);
+  register_db_change(*group, program);
+  register_db_exchange(*group, program);
   register_db_upkeep(*group, program);
 }
 

@@ -1,11 +1,107 @@
 #include <fmt/format.h>
 
+#include "base/error.h"
+#include "db/check.h"
+#include "db/snapshot.h"
 #include "db/upgrade.h"
+#include "tools/database_info.h"
 #include "tools/db_commands.h"
 
 namespace remomask {
 
 namespace {
+
+void register_db_info(CLI::App& group, Program& program) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command =
+      add_command(group, "info", "say what a database holds", "remomask db info motions.sqlite");
+  command->add_option("database", *path, "database file")->required();
+  command->callback([path, &program] {
+    const auto document = describe_database(*path);
+    if (program.json) return program.print_json(document);
+    print_description(document);
+  });
+}
+
+void register_check(CLI::App& group, Program& program) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = add_command(group, "check", "look for damage; exit status 1 if there is any",
+                                  "remomask db check motions.sqlite");
+  command->add_option("database", *path, "database file")->required();
+  command->callback([path, &program] {
+    const CheckReport report = check_database(*path, program.monitor());
+    program.finish_progress();
+    nlohmann::json defects = nlohmann::json::array();
+    for (const Defect& defect : report.defects) {
+      defects.push_back(
+          {{"clip_id", defect.clip_id}, {"clip", defect.clip}, {"what", defect.what}});
+      if (program.json) continue;
+      if (defect.clip_id == 0) {
+        fmt::print("database: {}\n", defect.what);
+      } else {
+        fmt::print("clip {} (number {}): {}\n", defect.clip, defect.clip_id, defect.what);
+      }
+    }
+    program.print_json({{"file", *path},
+                        {"clips", report.clips},
+                        {"captions", report.captions},
+                        {"embeddings", report.embeddings},
+                        {"defects", defects}});
+    if (!report.defects.empty()) {
+      throw Error(fmt::format("{}: {} defects", *path, report.defects.size()));
+    }
+    if (!program.json) {
+      fmt::print("{}: in order ({} clips, {} captions, {} clips' vectors)\n", *path, report.clips,
+                 report.captions, report.embeddings);
+    }
+  });
+}
+
+void register_snapshot(CLI::App& group, Program& program) {
+  struct Options {
+    std::string database, target;
+    bool force = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(group, "snapshot", "copy a database into one file, while others use it",
+                  "remomask db snapshot motions.sqlite monday.sqlite");
+  command->add_option("database", options->database, "database file")->required();
+  command->add_option("target", options->target, "new file")->required();
+  command->add_flag("--force", options->force, "replace the file if it exists");
+  command->callback([options, &program] {
+    snapshot_database(options->database, options->target, options->force, program.monitor());
+    program.finish_progress();
+    if (program.json) return program.print_json({{"snapshot", options->target}});
+    fmt::print("{}: written\n", options->target);
+  });
+}
+
+void register_restore(CLI::App& group, Program& program) {
+  struct Options {
+    std::string snapshot, database;
+    bool force = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(group, "restore", "put a snapshot in the place of a database",
+                                  "remomask db restore monday.sqlite motions.sqlite --force");
+  command->add_option("snapshot", options->snapshot, "file that db snapshot wrote")->required();
+  command->add_option("database", options->database, "database file")->required();
+  command->add_flag("--force", options->force, "replace the database if it exists");
+  command->callback([options, &program] {
+    const RestoreReport report =
+        restore_database(options->snapshot, options->database, options->force, program.monitor());
+    program.finish_progress();
+    if (program.json) {
+      return program.print_json({{"database", options->database}, {"set_aside", report.set_aside}});
+    }
+    if (!report.set_aside.empty()) {
+      fmt::print("the damaged old file is now {}\n", report.set_aside);
+    }
+    fmt::print("{}: restored; its index must be made anew: remomask index {}\n", options->database,
+               options->database);
+  });
+}
 
 void register_upgrade(CLI::App& group, Program& program) {
   auto path = std::make_shared<std::string>();
@@ -29,6 +125,12 @@ void register_upgrade(CLI::App& group, Program& program) {
 
 }  // namespace
 
-void register_db_upkeep(CLI::App& group, Program& program) { register_upgrade(group, program); }
+void register_db_upkeep(CLI::App& group, Program& program) {
+  register_db_info(group, program);
+  register_check(group, program);
+  register_snapshot(group, program);
+  register_restore(group, program);
+  register_upgrade(group, program);
+}
 
 }  // namespace remomask

@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
-#include <map>
-
-#include "base/error.h"
-#include "db/database.h"
 #include "nn/model_file.h"
+#include "tools/database_info.h"
 #include "tools/program.h"
 
 namespace remomask {
@@ -31,24 +28,6 @@ nlohmann::json describe_model(const std::string& path) {
   return {{"file", path}, {"stages", stages}};
 }
 
-nlohmann::json describe_database(const std::string& path) {
-  const Database database(path, OpenMode::read_only);
-  std::map<std::string, int> splits, sources, licences;
-  size_t captions = 0;
-  double seconds = 0;
-  const auto clips = database.clips();
-  for (const Clip& clip : clips) {
-    ++splits[clip.split];
-    ++sources[clip.source];
-    ++licences[clip.licence];
-    captions += clip.captions.size();
-    seconds += clip.frames / 20.0;
-  }
-  return {{"file", path},          {"uuid", database.uuid()}, {"generation", database.generation()},
-          {"clips", clips.size()}, {"captions", captions},    {"minutes", seconds / 60},
-          {"splits", splits},      {"sources", sources},      {"licences", licences}};
-}
-
 }  // namespace
 
 void register_info(CLI::App& app, Program& program) {
@@ -59,16 +38,7 @@ void register_info(CLI::App& app, Program& program) {
   command->callback([path, &program] {
     const auto document = is_model_path(*path) ? describe_model(*path) : describe_database(*path);
     if (program.json) return program.print_json(document);
-    for (const auto& [key, value] : document.items()) {
-      if (value.is_object()) {
-        fmt::print("{}:\n", key);
-        for (const auto& [name, entry] : value.items()) {
-          fmt::print("  {:<12} {}\n", name.empty() ? "(unknown)" : name, entry.dump());
-        }
-      } else {
-        fmt::print("{:<12} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
-      }
-    }
+    print_description(document);
   });
 }
 

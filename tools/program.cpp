@@ -141,6 +141,11 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
   return command;
 }
 
+void add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& values,
+                    const std::string& description) {
+  command.add_option(name, values, description + " (repeatable)")->allow_extra_args(false);
+}
+
 std::string shipped_file(const std::string& name) {
   namespace fs = std::filesystem;
   std::vector<fs::path> folders;

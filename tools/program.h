@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "base/progress.h"
 
@@ -48,6 +49,11 @@ void register_db(CLI::App& app, Program& program);
 /// Adds a sub-command with its description and an example, shown by --help.
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& summary,
                       const std::string& example);
+
+/// An option that may be given several times, one value each time: it takes no
+/// file or clip name that stands behind its value.
+void add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& values,
+                    const std::string& description);
 
 /// Path of a file that is shipped in models/: $REMOMASK_MODELS, beside the
 /// program, or the source tree it was built from. Throws Error when it is in

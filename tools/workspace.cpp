@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "db/captions_index.h"
 
 namespace remomask {
 
@@ -28,11 +29,21 @@ std::string FileOptions::index_path() const {
 }
 
 void FilterOptions::add(CLI::App& command) {
-  command.add_option("--split", splits, "only clips of this split (repeatable)");
-  command.add_option("--label", labels,
-                     "only clips with KEY=VALUE among their labels (repeatable)");
+  add_repeatable(command, "--split", splits, "only clips of this split");
+  add_repeatable(command, "--label", labels, "only clips with KEY=VALUE among their labels");
   command.add_option("--min-seconds", min_seconds, "only clips at least this long");
   command.add_option("--max-seconds", max_seconds, "only clips at most this long");
+  add_repeatable(command, "--tag", tags, "only clips with this tag, or with all of several");
+  add_repeatable(command, "--licence", licences, "only clips of this licence");
+  command.add_option("--min-speed", min_speed,
+                     "only clips at least this fast over the ground, m/s");
+  command.add_option("--max-speed", max_speed, "only clips at most this fast over the ground, m/s");
+  auto* plain =
+      command.add_option("--words", words, "only clips with all these words in one caption");
+  command
+      .add_option("--caption-query", caption_query,
+                  "only clips whose captions answer this FTS5 query, for example 'walk NOT run*'")
+      ->excludes(plain);
 }
 
 ClipFilter FilterOptions::filter() const {
@@ -41,6 +52,14 @@ ClipFilter FilterOptions::filter() const {
   for (const std::string& label : labels) result.labels.push_back(parse_label_condition(label));
   result.min_seconds = min_seconds;
   result.max_seconds = max_seconds;
+  result.tags = tags;
+  result.licences = licences;
+  result.min_speed = min_speed;
+  result.max_speed = max_speed;
+  result.caption_query = words.empty() ? caption_query : quote_caption_words(words);
+  if (!words.empty() && result.caption_query.empty()) {
+    throw Error("--words '" + words + "' holds no word; write letters or digits");
+  }
   return result;
 }
 

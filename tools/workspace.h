@@ -28,8 +28,9 @@ struct FileOptions {
 
 /// Options that choose which clips a search may return.
 struct FilterOptions {
-  std::vector<std::string> splits, labels;
-  std::optional<double> min_seconds, max_seconds;
+  std::vector<std::string> splits, labels, tags, licences;
+  std::optional<double> min_seconds, max_seconds, min_speed, max_speed;
+  std::string words, caption_query;
 
   void add(CLI::App& command);
   ClipFilter filter() const;

@@ -66,6 +66,62 @@ TEST(ClipFilter, SplitsAndLengths) {
   EXPECT_EQ(matching_clips(example_clips(), filter), (Ids{2, 3}));
 }
 
+TEST(ClipFilter, TagsLicencesAndSpeed) {
+  auto clips = example_clips();
+  clips[0].tags = {"good", "new"};
+  clips[1].tags = {"good"};
+  clips[2].licence = "MIT";
+  clips[3].licence = "CC0";
+  for (size_t i = 0; i < clips.size(); ++i) clips[i].speed = 0.5 * static_cast<double>(i);
+  ClipFilter filter;
+  filter.tags = {"good"};
+  EXPECT_FALSE(filter.empty());
+  EXPECT_EQ(matching_clips(clips, filter), (Ids{1, 2}));
+  filter.tags = {"good", "new"};
+  EXPECT_EQ(matching_clips(clips, filter), (Ids{1}));
+  filter = {};
+  filter.licences = {"MIT", "CC0"};
+  EXPECT_FALSE(filter.empty());
+  EXPECT_EQ(matching_clips(clips, filter), (Ids{3, 4}));
+  filter = {};
+  filter.min_speed = 0.5;
+  EXPECT_FALSE(filter.empty());
+  EXPECT_EQ(matching_clips(clips, filter), (Ids{2, 3, 4, 5}));
+  filter.max_speed = 1.5;
+  EXPECT_EQ(matching_clips(clips, filter), (Ids{2, 3, 4}));
+  filter.max_speed = 0.4;
+  EXPECT_NE(error_of([&] { matching_clips(clips, filter); }).find("0.5 m/s"), std::string::npos);
+  filter = {};
+  filter.tags = {"goood"};
+  EXPECT_NE(error_of([&] { matching_clips(clips, filter); }).find("'goood'"), std::string::npos);
+  filter = {};
+  filter.licences = {"GPL"};
+  EXPECT_NE(error_of([&] { matching_clips(clips, filter); }).find("'GPL'"), std::string::npos);
+}
+
+TEST(ClipFilter, CaptionsOfADatabase) {
+  TestFolder folder;
+  Database database(folder / "d", OpenMode::create);
+  std::vector<int64_t> ids;
+  for (const char* caption : {"a person walks", "someone runs", "a person runs left"}) {
+    Clip clip = named_clip(caption);
+    clip.captions = {caption};
+    clip.split = ids.empty() ? "test" : "train";
+    ids.push_back(database.add_clip(clip, walking_motion(20, static_cast<int>(ids.size()))));
+  }
+  ClipFilter filter;
+  EXPECT_EQ(matching_clips(database, filter), ids);
+  filter.caption_query = "running";
+  EXPECT_FALSE(filter.empty());
+  EXPECT_EQ(matching_clips(database, filter), (Ids{ids[1], ids[2]}));
+  filter.caption_query = "person";
+  filter.splits = {"train"};
+  EXPECT_EQ(matching_clips(database, filter), (Ids{ids[2]}));
+  EXPECT_THROW(matching_clips(database.clips(), filter), Error);
+  filter.caption_query = "person AND";
+  EXPECT_THROW(matching_clips(database, filter), Error);
+}
+
 TEST(ClipFilter, Exclusions) {
   ClipFilter filter;
   filter.excluded_groups = {"one"};

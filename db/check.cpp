@@ -1,0 +1,236 @@
+#include "db/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/error.h"
+#include "db/clip_hash.h"
+#include "db/clip_speed.h"
+#include "db/schema.h"
+#include "db/sqlite.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr const char* kReplaceClip =
+    "remove the clip and add its file again, or restore a snapshot";
+constexpr const char* kRestore = "restore a snapshot";
+constexpr double kUnitTolerance = 1e-3;
+constexpr float kFarthest = 1e6f;  // metres
+
+/// Also false for NaN.
+bool all_below(const std::vector<float>& values, float limit) {
+  return std::all_of(values.begin(), values.end(),
+                     [limit](float value) { return std::abs(value) < limit; });
+}
+
+double vector_length(const std::vector<float>& values) {
+  double sum = 0;
+  for (const float value : values) sum += static_cast<double>(value) * value;
+  return std::sqrt(sum);
+}
+
+class Checker {
+ public:
+  Checker(const SqliteConnection& connection, const Monitor& monitor)
+      : connection_(connection), monitor_(monitor) {}
+
+  CheckReport check() && {
+    attempt([&] { check_pages(); });
+    attempt([&] { check_references(); });
+    attempt([&] { check_facts(); });
+    attempt([&] { check_clips(); });
+    attempt([&] { check_captions(); });
+    attempt([&] { check_words(); });
+    attempt([&] { check_embeddings(); });
+    std::stable_sort(
+        report_.defects.begin(), report_.defects.end(),
+        [](const Defect& left, const Defect& right) { return left.clip_id < right.clip_id; });
+    return std::move(report_);
+  }
+
+ private:
+  /// Damaged pages end one part of the check, not all of it.
+  template <typename Part>
+  void attempt(Part part) {
+    try {
+      part();
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& error) {
+      add(0, error.what());
+    }
+  }
+
+  void add(int64_t clip_id, const std::string& what) {
+    std::string name;
+    if (clip_id != 0) {
+      const auto known = names_.find(clip_id);
+      if (known != names_.end()) name = known->second;
+    }
+    report_.defects.push_back({clip_id, name, what});
+  }
+
+  void check_pages() {
+    SqliteStatement rows(connection_, "PRAGMA integrity_check");
+    while (rows.step()) {
+      if (rows.text(0) != "ok") add(0, "SQLite's check says: " + rows.text(0) + "; " + kRestore);
+    }
+  }
+
+  void check_references() {
+    SqliteStatement rows(connection_, "PRAGMA foreign_key_check");
+    while (rows.step()) {
+      add(0, fmt::format("row {} of table {} belongs to a clip that is not there; {}",
+                         rows.integer(1), rows.text(0), kRestore));
+    }
+  }
+
+  void check_facts() {
+    const int64_t facts = connection_.integer(
+        "SELECT count(*) FROM fact WHERE (key = 'uuid' AND length(value) = 36) OR "
+        "(key = 'generation' AND CAST(value AS INTEGER) || '' = value)");
+    if (facts != 2) add(0, std::string("its uuid or generation is missing; ") + kRestore);
+  }
+
+  void check_clips() {
+    const int64_t total = connection_.integer("SELECT count(*) FROM clip");
+    SqliteStatement rows(connection_,
+                         "SELECT clip.id, name, clip.frames, labels, content_hash, speed, "
+                         "motion.frames, joints, positions, motion.clip_id IS NULL "
+                         "FROM clip LEFT JOIN motion ON motion.clip_id = clip.id ORDER BY id");
+    while (rows.step()) {
+      if (monitor_.stop_requested()) throw Interrupted("the check was stopped");
+      check_clip(rows);
+      monitor_.report({"check " + connection_.path(), static_cast<double>(++report_.clips),
+                       static_cast<double>(total), "clips"});
+    }
+  }
+
+  void check_clip(const SqliteStatement& row) {
+    const int64_t id = row.integer(0);
+    names_[id] = row.text(1);
+    const auto labels = nlohmann::json::parse(row.text(3), nullptr, false);
+    if (!labels.is_object()) add(id, std::string("its labels are no JSON object; ") + kReplaceClip);
+    if (row.integer(9) != 0) return add(id, std::string("has no motion; ") + kReplaceClip);
+    Motion motion;
+    motion.frames = static_cast<int>(row.integer(6));
+    motion.joints = static_cast<int>(row.integer(7));
+    if (motion.frames != row.integer(2)) {
+      return add(id, fmt::format("has {} frames, its motion {}; {}", row.integer(2), motion.frames,
+                                 kReplaceClip));
+    }
+    const int64_t bytes = row.bytes(8);
+    if (bytes != static_cast<int64_t>(sizeof(float)) * motion.frames * motion.joints * 3) {
+      return add(id, fmt::format("its {} bytes of positions are not {} frames of {} joints; {}",
+                                 bytes, motion.frames, motion.joints, kReplaceClip));
+    }
+    motion.positions = row.floats(8);
+    if (!all_below(motion.positions, kFarthest)) {
+      return add(id, std::string("a position is no number of metres; ") + kReplaceClip);
+    }
+    if (clip_content_hash(motion) != row.text(4)) {
+      add(id,
+          std::string("its motion is not the one that was stored (its content hash differs); ") +
+              kReplaceClip);
+    } else if (std::abs(mean_root_speed(motion) - row.real(5)) > 1e-6) {
+      add(id, std::string("its speed is not that of its motion; ") + kReplaceClip);
+    }
+  }
+
+  void check_captions() {
+    report_.captions = connection_.integer("SELECT count(*) FROM caption");
+    SqliteStatement rows(connection_,
+                         "SELECT clip_id FROM caption GROUP BY clip_id "
+                         "HAVING min(position) <> 0 OR max(position) <> count(*) - 1 "
+                         "OR max(position) >= 1024");
+    while (rows.step()) {
+      add(rows.integer(0), std::string("its captions are not numbered from 0; ") + kReplaceClip);
+    }
+  }
+
+  /// FTS5's own check would write. Instead the captions are indexed anew in a
+  /// temporary table, and every place of every word compared.
+  void check_words() {
+    connection_.execute(R"sql(
+      CREATE VIRTUAL TABLE temp.new_words USING fts5 (
+        text, content = '', tokenize = 'porter unicode61');
+      INSERT INTO temp.new_words (rowid, text) SELECT id, text FROM caption_row;
+      CREATE VIRTUAL TABLE temp.new_places USING fts5vocab (temp, new_words, instance);
+      CREATE VIRTUAL TABLE temp.old_places USING fts5vocab (main, caption_words, instance);
+    )sql");
+    // bm25() also asks for the length of every caption.
+    SqliteStatement rows(connection_, R"sql(
+      SELECT DISTINCT doc / 1024 FROM (
+        SELECT doc FROM (SELECT term, doc, offset FROM temp.new_places
+                         EXCEPT SELECT term, doc, offset FROM temp.old_places)
+        UNION SELECT doc FROM (SELECT term, doc, offset FROM temp.old_places
+                               EXCEPT SELECT term, doc, offset FROM temp.new_places)
+        UNION SELECT id FROM (SELECT id, sz FROM temp.new_words_docsize
+                              EXCEPT SELECT id, sz FROM caption_words_docsize)
+        UNION SELECT id FROM (SELECT id, sz FROM caption_words_docsize
+                              EXCEPT SELECT id, sz FROM temp.new_words_docsize)
+      ) ORDER BY 1)sql");
+    while (rows.step()) {
+      add(rows.integer(0),
+          "the full-text index does not answer for its captions; run: remomask db upgrade DB");
+    }
+  }
+
+  void check_embeddings() {
+    struct Widths {
+      int64_t motion, parts;
+    };
+    std::map<std::string, Widths> widths;
+    SqliteStatement rows(connection_,
+                         "SELECT retriever_hash, clip_id, motion, parts, text FROM embedding "
+                         "ORDER BY retriever_hash, clip_id");
+    while (rows.step()) {
+      if (monitor_.stop_requested()) throw Interrupted("the check was stopped");
+      ++report_.embeddings;
+      const std::string retriever = rows.text(0);
+      const int64_t id = rows.integer(1);
+      const Widths here{rows.bytes(2), rows.bytes(3)};
+      const Widths& first = widths.try_emplace(retriever, here).first->second;
+      const bool text_fits = rows.bytes(4) == 0 || rows.bytes(4) == here.motion;
+      if (here.motion % 4 != 0 || here.motion != first.motion || here.parts != first.parts ||
+          !text_fits) {
+        add(id, fmt::format("its vectors of retriever {} are {}, {} and {} bytes, others {} and "
+                            "{}; {}",
+                            retriever, here.motion, here.parts, rows.bytes(4), first.motion,
+                            first.parts, kReplaceClip));
+        continue;
+      }
+      const auto motion = rows.floats(2), parts = rows.floats(3), text = rows.floats(4);
+      const bool unit = std::abs(vector_length(motion) - 1) < kUnitTolerance &&
+                        (text.empty() || std::abs(vector_length(text) - 1) < kUnitTolerance);
+      if (!unit || !all_below(parts, 1 + kUnitTolerance)) {
+        add(id, "its vectors of retriever " + retriever + " are not of length 1; " + kReplaceClip);
+      }
+    }
+  }
+
+  const SqliteConnection& connection_;
+  const Monitor& monitor_;
+  CheckReport report_;
+  std::map<int64_t, std::string> names_;
+};
+
+}  // namespace
+
+CheckReport check_database(const std::string& path, const Monitor& monitor) {
+  const SqliteConnection connection(path, SqliteMode::read_only);
+  check_schema(connection);
+  require_present_schema(connection);
+  // All parts look at one state, whatever other programs write.
+  connection.execute("BEGIN");
+  return Checker(connection, monitor).check();
+}
+
+}  // namespace remomask

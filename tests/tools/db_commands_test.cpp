@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/tools/program_runner.h"
+
+namespace remomask {
+namespace {
+
+const std::vector<std::string> kDbCommands = {"info",  "list",     "show",    "add",
+                                              "tag",   "remove",   "merge",   "export",
+                                              "check", "snapshot", "restore", "upgrade"};
+
+class DbCommandsTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    run_json({"procedural", "--db", database_, "--count", "12"});
+    clips_ = run_json({"db", "list", database_})["clips"];
+    ASSERT_EQ(clips_.size(), 12u);
+  }
+  std::string name(size_t i) const { return clips_[i]["name"]; }
+  size_t count(std::vector<std::string> filters) const {
+    filters.insert(filters.begin(), {"db", "list", database_});
+    return run_json(filters)["clips"].size();
+  }
+
+  ScratchFolder scratch_;
+  std::string database_ = scratch_.path("d.sqlite");
+  nlohmann::json clips_;
+};
+
+TEST(DbUsage, EveryCommandHasHelpWithAnExample) {
+  const ProgramResult group = run_program({"db", "--help"});
+  EXPECT_EQ(group.exit_code, 0);
+  for (const std::string& command : kDbCommands) {
+    EXPECT_NE(group.output.find("\n  " + command), std::string::npos) << command;
+    const ProgramResult own = run_program({"db", command, "--help"});
+    EXPECT_EQ(own.exit_code, 0) << command;
+    EXPECT_NE(own.output.find("Example:\n  remomask db " + command), std::string::npos)
+        << own.output;
+  }
+  EXPECT_EQ(run_program({"db"}).exit_code, 2);
+}
+
+TEST_F(DbCommandsTest, TagsAndFiltersChooseClips) {
+  EXPECT_EQ(run_json({"db", "tag", database_, name(0), std::to_string(int(clips_[1]["id"])),
+                      "--add", "good", "--add", "new", "--set-label", "mark=7"})["changed"],
+            2);
+  EXPECT_EQ(count({"--tag", "good"}), 2u);
+  EXPECT_EQ(count({"--label", "mark=7"}), 2u);
+  EXPECT_EQ(
+      run_json({"db", "tag", database_, "--tag", "good", name(0), "--drop", "new"})["changed"], 1);
+  EXPECT_EQ(count({"--tag", "new"}), 1u);
+  const auto shown = run_json({"db", "show", database_, name(1)})["clips"][0];
+  EXPECT_EQ(shown["tags"], (nlohmann::json{"good", "new"}));
+  EXPECT_EQ(shown["labels"]["mark"], 7);
+  EXPECT_EQ(run_json({"db", "tag", database_, name(2), "--set-caption", "zebra dance",
+                      "--set-split", "none", "--set-licence", "X"})["changed"],
+            1);
+  EXPECT_EQ(count({"--words", "dancing zebras"}), 1u);
+  EXPECT_EQ(count({"--caption-query", "zeb* NOT horse"}), 1u);
+  EXPECT_EQ(count({"--licence", "X", "--split", "none"}), 1u);
+  const double speed = clips_[3]["speed"];
+  EXPECT_GE(count({"--min-speed", std::to_string(speed - 0.001)}), 1u);
+  EXPECT_EQ(count({"--min-speed", "100"}), 0u);
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"list", database_, "--tag", "bad"},
+        {"list", database_, "--caption-query", "AND"},
+        {"list", database_, "--words", "..."},
+        {"tag", database_, name(0)},
+        {"tag", database_, "--add", "x"},
+        {"tag", database_, "nobody", "--add", "x"},
+        {"show", database_, "99"}}) {
+    std::vector<std::string> arguments = wrong;
+    arguments.insert(arguments.begin(), "db");
+    const ProgramResult result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 1) << arguments[1] << result.output;
+    EXPECT_EQ(result.output, "");
+    EXPECT_NE(result.errors, "");
+  }
+}
+
+TEST_F(DbCommandsTest, RemoveAsksBeforeItTakesSeveral) {
+  const ProgramResult asked = run_program({"db", "remove", database_, "--min-seconds", "0"});
+  EXPECT_EQ(asked.exit_code, 1);
+  EXPECT_NE(asked.errors.find("would remove 12 clips"), std::string::npos) << asked.errors;
+  EXPECT_NE(asked.errors.find("--yes"), std::string::npos);
+  EXPECT_EQ(run_program({"db", "remove", database_, "--yes"}).exit_code, 1);
+  EXPECT_EQ(count({}), 12u);
+  EXPECT_EQ(run_json({"db", "remove", database_, name(0)})["removed"], nlohmann::json{name(0)});
+  run_json({"db", "remove", database_, name(1), name(2), "--yes"});
+  EXPECT_EQ(count({}), 9u);
+}
+
+TEST_F(DbCommandsTest, ExportMergeAddAndCheckWorkTogether) {
+  const std::string out = scratch_.path("out"), again = scratch_.path("again.sqlite");
+  EXPECT_EQ(run_json({"db", "export", database_, out})["clips"], 12);
+  EXPECT_EQ(run_json({"import", out, "--db", again})["clips_stored"], 12);
+  EXPECT_EQ(run_json({"db", "merge", again, database_})["duplicates"].size(), 12u);
+  const std::string few = scratch_.path("few");
+  run_json({"db", "export", database_, few, name(0), name(1), "--format", "bvh"});
+  run_json({"db", "remove", database_, name(0)});
+  const auto added = run_json({"db", "add", database_, few + "/" + name(0) + ".bvh", "--caption",
+                               "back again", "--tag", "t", "--label", "a=b", "--split", "val"});
+  EXPECT_EQ(added["clips"][0]["name"], name(0));
+  const ProgramResult twice =
+      run_program({"db", "add", database_, few + "/" + name(0) + ".bvh", "--json"});
+  EXPECT_EQ(twice.exit_code, 1);
+  EXPECT_EQ(nlohmann::json::parse(twice.output)["rejected"].size(), 1u);
+  EXPECT_TRUE(run_json({"db", "check", database_})["defects"].empty());
+  const auto info = run_json({"db", "info", database_});
+  EXPECT_EQ(info["clips"], 12);
+  EXPECT_EQ(info["tags"]["t"], 1);
+}
+
+TEST_F(DbCommandsTest, SnapshotRestoreUpgrade) {
+  const std::string copy = scratch_.path("copy.sqlite");
+  run_json({"db", "snapshot", database_, copy});
+  EXPECT_EQ(run_program({"db", "snapshot", database_, copy}).exit_code, 1);
+  run_json({"db", "remove", database_, name(0)});
+  const ProgramResult refused = run_program({"db", "restore", copy, database_});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.errors.find("--force"), std::string::npos);
+  EXPECT_EQ(count({}), 11u);
+  run_json({"db", "restore", copy, database_, "--force"});
+  EXPECT_EQ(count({}), 12u);
+  EXPECT_EQ(run_json({"db", "upgrade", database_})["version"], 2);
+}
+
+}  // namespace
+}  // namespace remomask

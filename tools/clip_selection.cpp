@@ -1,0 +1,57 @@
+#include "tools/clip_selection.h"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+
+#include "base/error.h"
+
+namespace remomask {
+
+void ClipSelection::add(CLI::App& command) {
+  command.add_option("clips", clips, "names or numbers of clips");
+  filter.add(command);
+}
+
+bool ClipSelection::empty() const { return clips.empty() && filter.filter().empty(); }
+
+std::vector<int64_t> ClipSelection::ids(const Database& database) const {
+  std::vector<int64_t> passing = matching_clips(database, filter.filter());
+  if (clips.empty()) return passing;
+  std::vector<int64_t> named, both;
+  for (const std::string& clip : clips) named.push_back(find_clip(database, clip));
+  std::sort(named.begin(), named.end());
+  named.erase(std::unique(named.begin(), named.end()), named.end());
+  std::set_intersection(named.begin(), named.end(), passing.begin(), passing.end(),
+                        std::back_inserter(both));
+  return both;
+}
+
+std::vector<int64_t> ClipSelection::chosen_ids(const Database& database) const {
+  if (empty()) {
+    throw Error("no clip is chosen; name clips, or choose them with filters such as --tag");
+  }
+  return ids(database);
+}
+
+int64_t find_clip(const Database& database, const std::string& name_or_id) {
+  if (const auto id = database.find_name(name_or_id)) return *id;
+  int64_t id = 0;
+  const char* end = name_or_id.data() + name_or_id.size();
+  const auto parsed = std::from_chars(name_or_id.data(), end, id);
+  if (parsed.ec == std::errc() && parsed.ptr == end) return database.clip(id).id;
+  throw Error(database.path() + ": there is no clip '" + name_or_id +
+              "'; remomask db list shows the names");
+}
+
+nlohmann::json parse_labels(const std::vector<std::string>& pairs) {
+  nlohmann::json labels = nlohmann::json::object();
+  for (const std::string& pair : pairs) {
+    const LabelCondition label = parse_label_condition(pair);
+    const auto value = nlohmann::json::parse(label.value, nullptr, false);
+    labels[label.key] = value.is_discarded() ? nlohmann::json(label.value) : value;
+  }
+  return labels;
+}
+
+}  // namespace remomask

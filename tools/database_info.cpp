@@ -1,0 +1,78 @@
+#include "tools/database_info.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+
+#include "index/filter.h"
+
+namespace remomask {
+
+nlohmann::json describe_database(const std::string& path) {
+  const Database database(path, OpenMode::read_only);
+  const ReadSnapshot snapshot(database);
+  std::map<std::string, int> splits, sources, licences, tags;
+  size_t captions = 0;
+  double seconds = 0;
+  const auto clips = database.clips();
+  for (const Clip& clip : clips) {
+    ++splits[clip.split];
+    ++sources[clip.source];
+    ++licences[clip.licence];
+    for (const std::string& tag : clip.tags) ++tags[tag];
+    captions += clip.captions.size();
+    seconds += clip_seconds(clip);
+  }
+  std::map<std::string, size_t> embedded;
+  for (const std::string& retriever : database.retrievers()) {
+    embedded[retriever] = database.embedded_clips(retriever).size();
+  }
+  return {{"file", path},
+          {"uuid", database.uuid()},
+          {"generation", database.generation()},
+          {"bytes", std::filesystem::file_size(path)},
+          {"clips", clips.size()},
+          {"captions", captions},
+          {"minutes", seconds / 60},
+          {"splits", splits},
+          {"sources", sources},
+          {"licences", licences},
+          {"tags", tags},
+          {"embedded", embedded}};
+}
+
+nlohmann::json clip_json(const Clip& clip) {
+  return {{"id", clip.id},
+          {"name", clip.name},
+          {"source", clip.source},
+          {"source_file", clip.source_file},
+          {"start_frame", clip.start_frame},
+          {"frames", clip.frames},
+          {"seconds", clip_seconds(clip)},
+          {"speed", clip.speed},
+          {"split", clip.split},
+          {"licence", clip.licence},
+          {"group", clip.group},
+          {"mirrored", clip.mirrored},
+          {"skeleton", clip.skeleton},
+          {"content_hash", clip.content_hash},
+          {"captions", clip.captions},
+          {"labels", clip.labels},
+          {"tags", clip.tags}};
+}
+
+void print_description(const nlohmann::json& document) {
+  for (const auto& [key, value] : document.items()) {
+    if (value.is_object() && !value.empty()) {
+      fmt::print("{}:\n", key);
+      for (const auto& [name, entry] : value.items()) {
+        fmt::print("  {:<12} {}\n", name.empty() ? "(unknown)" : name, entry.dump());
+      }
+    } else {
+      fmt::print("{:<12} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+}
+
+}  // namespace remomask

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include "db/export.h"
+#include "db/merge.h"
+#include "tools/clip_selection.h"
+#include "tools/db_commands.h"
+
+namespace remomask {
+
+namespace {
+
+nlohmann::json pairs_json(const std::vector<std::pair<std::string, std::string>>& pairs,
+                          const char* left, const char* right) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [first, second] : pairs) list.push_back({{left, first}, {right, second}});
+  return list;
+}
+
+void register_merge(CLI::App& group, Program& program) {
+  struct Options {
+    std::string database, other;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(group, "merge", "take in all clips of another database",
+                                  "remomask db merge motions.sqlite colleague.sqlite");
+  command->add_option("database", options->database, "database file that grows")->required();
+  command->add_option("other", options->other, "database file that is read")->required();
+  command->callback([options, &program] {
+    Database database(options->database, OpenMode::read_write);
+    const Database other(options->other, OpenMode::read_only);
+    const MergeReport report = merge_database(database, other, program.monitor());
+    program.finish_progress();
+    if (program.json) {
+      return program.print_json({{"clips", report.clips},
+                                 {"added", report.added},
+                                 {"embeddings", report.embeddings},
+                                 {"duplicates", pairs_json(report.duplicates, "clip", "same_as")},
+                                 {"renamed", pairs_json(report.renamed, "clip", "name")},
+                                 {"warnings", report.warnings}});
+    }
+    for (const std::string& warning : report.warnings) program.warn(warning);
+    for (const auto& [clip, same] : report.duplicates) {
+      fmt::print("left out {}: is the same motion as {}\n", clip, same);
+    }
+    for (const auto& [clip, name] : report.renamed) fmt::print("{} is now {}\n", clip, name);
+    fmt::print("{} of {} clips added ({} duplicates, {} renamed), {} vectors came along\n",
+               report.added, report.clips, report.duplicates.size(), report.renamed.size(),
+               report.embeddings);
+  });
+}
+
+void register_export(CLI::App& group, Program& program) {
+  struct Options {
+    std::string database, folder;
+    ExportFormat format = ExportFormat::npy;
+    ClipSelection selection;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(group, "export", "write clips as files that remomask import reads back",
+                  "remomask db export motions.sqlite my_clips --tag good --format bvh");
+  command->add_option("database", options->database, "database file")->required();
+  command->add_option("folder", options->folder, "new or empty folder")->required();
+  options->selection.add(*command);
+  const std::map<std::string, ExportFormat> formats = {{"bvh", ExportFormat::bvh},
+                                                       {"npy", ExportFormat::npy}};
+  command
+      ->add_option("--format", options->format,
+                   "npy (default) keeps the very positions, bvh opens in other programs")
+      ->transform(CLI::CheckedTransformer(formats));
+  command->callback([options, &program] {
+    const Database database(options->database, OpenMode::read_only);
+    const auto ids = options->selection.ids(database);
+    export_clips(database, ids, options->folder, options->format, program.monitor());
+    program.finish_progress();
+    if (program.json) {
+      return program.print_json({{"folder", options->folder}, {"clips", ids.size()}});
+    }
+    fmt::print("{}: {} clips\n", options->folder, ids.size());
+  });
+}
+
+}  // namespace
+
+void register_db_exchange(CLI::App& group, Program& program) {
+  register_merge(group, program);
+  register_export(group, program);
+}
+
+}  // namespace remomask

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include "tools/clip_selection.h"
+#include "tools/database_info.h"
+#include "tools/db_commands.h"
+
+namespace remomask {
+
+namespace {
+
+void print_clip_line(const Clip& clip) {
+  std::string tags;
+  for (const std::string& tag : clip.tags) tags += " [" + tag + "]";
+  fmt::print("{:6}  {:5.1f} s  {:4.1f} m/s  {:<5}  {:<32}{} {}\n", clip.id, clip_seconds(clip),
+             clip.speed, clip.split, clip.name, tags,
+             clip.captions.empty() ? "" : clip.captions.front());
+}
+
+void register_list(CLI::App& group, Program& program) {
+  struct Options {
+    std::string database;
+    FilterOptions filter;
+    int limit = 0;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_command(group, "list", "list the clips that pass the filters",
+                  "remomask db list motions.sqlite --label content=walk --min-speed 0.5");
+  command->add_option("database", options->database, "database file")->required();
+  options->filter.add(*command);
+  command->add_option("--limit", options->limit, "show at most so many; 0: all")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->callback([options, &program] {
+    const Database database(options->database, OpenMode::read_only);
+    const ReadSnapshot snapshot(database);
+    const auto ids = matching_clips(database, options->filter.filter());
+    size_t shown = ids.size();
+    if (options->limit > 0) shown = std::min(shown, static_cast<size_t>(options->limit));
+    nlohmann::json clips = nlohmann::json::array();
+    for (size_t i = 0; i < shown; ++i) {
+      const Clip clip = database.clip(ids[i]);
+      if (program.json) {
+        clips.push_back(clip_json(clip));
+      } else {
+        print_clip_line(clip);
+      }
+    }
+    if (program.json) return program.print_json({{"clips", clips}, {"matching", ids.size()}});
+    fmt::print("{} of {} clips pass, {} shown\n", ids.size(), database.clip_count(), shown);
+  });
+}
+
+void register_show(CLI::App& group, Program& program) {
+  struct Options {
+    std::string database;
+    std::vector<std::string> clips;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(group, "show", "show all that is stored about clips",
+                                  "remomask db show motions.sqlite walk_01");
+  command->add_option("database", options->database, "database file")->required();
+  command->add_option("clips", options->clips, "names or numbers of clips")->required();
+  command->callback([options, &program] {
+    const Database database(options->database, OpenMode::read_only);
+    const ReadSnapshot snapshot(database);
+    nlohmann::json clips = nlohmann::json::array();
+    for (const std::string& name : options->clips) {
+      const int64_t id = find_clip(database, name);
+      nlohmann::json clip = clip_json(database.clip(id));
+      nlohmann::json retrievers = nlohmann::json::array();
+      for (const std::string& retriever : database.retrievers()) {
+        if (database.embedding(retriever, id)) retrievers.push_back(retriever);
+      }
+      clip["embedded"] = retrievers;
+      clips.push_back(clip);
+    }
+    if (program.json) return program.print_json({{"clips", clips}});
+    for (const auto& clip : clips) {
+      print_description(clip);
+      fmt::print("\n");
+    }
+  });
+}
+
+}  // namespace
+
+void register_db_list(CLI::App& group, Program& program) {
+  register_list(group, program);
+  register_show(group, program);
+}
+
+}  // namespace remomask
