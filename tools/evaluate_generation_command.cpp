@@ -29,8 +29,10 @@ void register_evaluate_generation(CLI::App& parent, Program& program) {
       ->capture_default_str();
   command->add_option("--prompt-seed", options->labels.seed, "choice of the prompts")
       ->capture_default_str();
-  command->add_option("--results", options->labels.results_path,
-                      "JSON Lines, one outcome a prompt; an existing file is continued");
+  command
+      ->add_option("--results", options->labels.results_path,
+                   "JSON Lines, one outcome a prompt; an existing file is continued")
+      ->required();
   command->callback([options, &program] {
     const std::string model_path = options->files.model_path();
     const auto stages = load_model(model_path);
