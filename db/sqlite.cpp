@@ -78,6 +78,14 @@ SqliteConnection::SqliteConnection(std::string path, SqliteMode mode) : path_(st
   const std::string uri = uri_of_path(path_);
   try {
     if (mode == SqliteMode::read_only) {
+      // A program that was killed while it wrote a file without WAL leaves a
+      // journal, which a reader may not play back: read once as a writer.
+      if (std::filesystem::exists(path_ + "-journal") && ::access(path_.c_str(), W_OK) == 0) {
+        open(uri, SQLITE_OPEN_READWRITE);
+        sqlite3_busy_timeout(handle_, kBusyMilliseconds);
+        integer("SELECT count(*) FROM sqlite_master");
+        close();
+      }
       open(uri, SQLITE_OPEN_READONLY);
       // Readers of a WAL database make two files beside it. Where they must not,
       // nobody else writes either, so the file can be taken as unchanging.

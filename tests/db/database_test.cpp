@@ -1,5 +1,6 @@
 #include "db/database.h"
 
+#include <sqlite3.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -285,6 +286,40 @@ TEST(Database, ReadOnlyFilesCanBeReadAndNotWritten) {
   EXPECT_NE(error_of([&] { Database(path, OpenMode::read_write); }).find("cannot be written"),
             std::string::npos);
   ::chmod((folder / "shelf").c_str(), 0755);
+}
+
+TEST(Database, JournalOfAKilledWriterIsPlayedBackByReaders) {
+  TestFolder folder;
+  {
+    Database database(folder / "d", OpenMode::create);
+    for (int i = 0; i < 8; ++i) {
+      database.add_clip(named_clip("clip" + std::to_string(i)), walking_motion(60, i));
+    }
+  }
+  // A writer without WAL that is killed after half of its pages went to the file:
+  // file and journal as they lie on the disk in the middle of its transaction.
+  sqlite3* writer = nullptr;
+  ASSERT_EQ(sqlite3_open((folder / "d").c_str(), &writer), SQLITE_OK);
+  const auto run = [&](const char* sql) {
+    ASSERT_EQ(sqlite3_exec(writer, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sql;
+  };
+  run("PRAGMA journal_mode = DELETE");
+  run("PRAGMA cache_size = 1");
+  run("BEGIN");
+  run("UPDATE motion SET positions = zeroblob(length(positions))");
+  run("UPDATE clip SET name = 'lost' || id");
+  std::filesystem::copy_file(folder / "d", folder / "killed");
+  std::filesystem::copy_file(folder / "d-journal", folder / "killed-journal");
+  run("ROLLBACK");
+  sqlite3_close(writer);
+
+  const Database killed(folder / "killed", OpenMode::read_only);
+  EXPECT_EQ(killed.clip_count(), 8);
+  EXPECT_TRUE(killed.find_name("clip0").has_value());
+  const auto id = killed.find_name("clip7");
+  ASSERT_TRUE(id.has_value());
+  EXPECT_EQ(killed.motion(*id).positions, walking_motion(60, 7).positions);
+  EXPECT_FALSE(std::filesystem::exists(folder / "killed-journal"));
 }
 
 TEST(Database, ReadersSeeTheLastCommitAndASecondWriterIsTold) {
