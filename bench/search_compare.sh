@@ -1,5 +1,5 @@
 #!/bin/sh
-# Exact search by this program, by raw FAISS and by NumPy in one session, with as
+# Exact search by this program, by raw FAISS and by NumPy in one run, with as
 # many threads each: search_compare.sh BUILD_FOLDER [THREADS]
 set -eu
 build=${1:?usage: search_compare.sh BUILD_FOLDER [THREADS]}
