@@ -4,6 +4,10 @@
 
 namespace remomask {
 
+namespace {
+
+/// Probability that at least one of `correct` entries is among the first k of
+/// `entries` in random order; 0 < correct <= entries.
 double chance_within(int64_t k, int64_t correct, int64_t entries) {
   double none = 1;
   for (int64_t i = 0; i < k && i < entries; ++i) {
@@ -12,6 +16,8 @@ double chance_within(int64_t k, int64_t correct, int64_t entries) {
   }
   return 1 - none;
 }
+
+}  // namespace
 
 LabelFigures label_figures(const std::vector<LabelledQuery>& queries,
                            const std::vector<TrainingClip>& clips) {

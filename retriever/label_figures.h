@@ -30,8 +30,4 @@ struct LabelledQuery {
 LabelFigures label_figures(const std::vector<LabelledQuery>& queries,
                            const std::vector<TrainingClip>& clips);
 
-/// Probability that at least one of `correct` entries is among the first k of
-/// `entries` in random order; 0 < correct <= entries.
-double chance_within(int64_t k, int64_t correct, int64_t entries);
-
 }  // namespace remomask

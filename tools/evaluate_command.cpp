@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "db/database.h"
+#include "retriever/retrieval_metrics.h"
 
 namespace remomask {
 
@@ -28,6 +29,14 @@ std::vector<TrainingClip> EvaluationInput::load(const std::string& wanted_split,
         "has no clips of split \"" + wanted_split + "\"; choose another --split or import clips");
   }
   return clips;
+}
+
+nlohmann::json EvaluationInput::stamped(nlohmann::json document,
+                                        const std::vector<TrainingClip>& clips) const {
+  document["model"] = files.model_path();
+  document["split"] = split;
+  document["split_hash"] = clip_set_hash(clips);
+  return document;
 }
 
 void register_evaluate(CLI::App& app, Program& program) {

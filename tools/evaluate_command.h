@@ -21,6 +21,8 @@ struct EvaluationInput {
   /// stored. Throws FileError when there are none.
   std::vector<TrainingClip> load(const std::string& wanted_split, FeatureMode mode) const;
   std::vector<TrainingClip> load(FeatureMode mode) const { return load(split, mode); }
+  /// The document of --json with what was measured: model, split, hash of its clips.
+  nlohmann::json stamped(nlohmann::json document, const std::vector<TrainingClip>& clips) const;
 };
 
 /// The sub-commands of `remomask evaluate`.

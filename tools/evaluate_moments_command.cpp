@@ -63,13 +63,7 @@ void register_evaluate_moments(CLI::App& parent, Program& program) {
     const MomentEvaluation result = measure_moments(
         retriever, clips, options->tasks, options->moments, options->bootstrap, program.monitor());
     program.finish_progress();
-    if (program.json) {
-      nlohmann::json document = result;
-      document["split"] = options->input.split;
-      document["split_hash"] = clip_set_hash(clips);
-      document["model"] = model_path;
-      return program.print_json(document);
-    }
+    if (program.json) return program.print_json(options->input.stamped(result, clips));
     fmt::print(
         "split {} ({} clips, {}): {} motions of {} clips with different contents, joined; "
         "sentence: "

@@ -46,13 +46,7 @@ void register_evaluate_queries(CLI::App& parent, Program& program) {
     const QueryRobustness result =
         measure_query_robustness(retriever, clips, options->bootstrap, program.monitor());
     program.finish_progress();
-    if (program.json) {
-      nlohmann::json document = result;
-      document["split"] = options->input.split;
-      document["split_hash"] = clip_set_hash(clips);
-      document["model"] = model_path;
-      return program.print_json(document);
-    }
+    if (program.json) return program.print_json(options->input.stamped(result, clips));
     fmt::print("text-to-motion, split {} ({} clips, {}), full gallery; {}\n", options->input.split,
                clips.size(), clip_set_hash(clips),
                retrieval_definition(RetrievalProtocol::duplicates, {}));

@@ -101,12 +101,7 @@ void register_evaluate_retrieval(CLI::App& parent, Program& program) {
     const RetrievalEvaluation result =
         evaluate_retrieval(retriever, clips, options->measure, program.monitor());
     program.finish_progress();
-    if (program.json) {
-      nlohmann::json document = result;
-      document["split"] = options->input.split;
-      document["model"] = model_path;
-      return program.print_json(document);
-    }
+    if (program.json) return program.print_json(options->input.stamped(result, clips));
     for (const ProtocolEvaluation& protocol : result.protocols) {
       print_protocol(protocol, result, "split " + options->input.split);
     }

@@ -28,12 +28,7 @@ void register_evaluate_tokenizer(CLI::App& parent, Program& program) {
     TokenizerNetwork network = load_tokenizer_network(load_stage(model_path, "tokenizer"));
     const auto clips = input->load(FeatureMode::fixed);
     const TokenizerMetrics metrics = measure_tokenizer(network, clip_features(clips));
-    if (program.json) {
-      nlohmann::json document = metrics;
-      document["split"] = input->split;
-      document["model"] = model_path;
-      return program.print_json(document);
-    }
+    if (program.json) return program.print_json(input->stamped(metrics, clips));
     fmt::print("split {}: {} clips, {} frames; MPJPE: root of every frame subtracted\n",
                input->split, metrics.clips, metrics.frames);
     print_reconstruction("all levels", metrics.all_levels);
