@@ -74,17 +74,19 @@ AtomicFile::~AtomicFile() {
   if (!committed_) ::unlink(temporary_.c_str());
 }
 
-void AtomicFile::commit() {
-  sync_path(temporary_, O_RDONLY);
+void AtomicFile::commit(Durability durability) {
+  if (durability == Durability::power_cuts) sync_path(temporary_, O_RDONLY);
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
     throw FileError(path_, 0, "cannot replace: " + errno_text());
   }
   committed_ = true;
+  if (durability == Durability::kills) return;
   const fs::path parent = fs::path(path_).parent_path();
   sync_path(parent.empty() ? "." : parent.string(), O_RDONLY | O_DIRECTORY);
 }
 
-void write_file_atomically(const std::string& path, std::string_view content) {
+void write_file_atomically(const std::string& path, std::string_view content,
+                           Durability durability) {
   AtomicFile file(path);
   {
     Descriptor descriptor(
@@ -100,7 +102,7 @@ void write_file_atomically(const std::string& path, std::string_view content) {
       done += static_cast<size_t>(count);
     }
   }
-  file.commit();
+  file.commit(durability);
 }
 
 }  // namespace remomask

@@ -9,10 +9,16 @@ namespace remomask {
 /// Whole content of a file. Throws FileError when it cannot be read.
 std::string read_file(const std::string& path);
 
+/// Whether a file is on the disk when its writing returns. Either way a kill
+/// leaves it old or new; without the wait a power cut may leave it cut off, which
+/// suits files that can be made again and whose damage is noticed.
+enum class Durability { power_cuts, kills };
+
 /// Writes `content` so that `path` holds either its old content or all of the
 /// new one, whatever happens meanwhile: temporary name beside it, fsync,
 /// rename. Throws FileError (disk full, no permission); the old file stays.
-void write_file_atomically(const std::string& path, std::string_view content);
+void write_file_atomically(const std::string& path, std::string_view content,
+                           Durability durability = Durability::power_cuts);
 
 /// The same for a library that writes to a path itself: write to
 /// `temporary_path()`, then `commit()`. Without commit the temporary is removed.
@@ -23,7 +29,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   const std::string& temporary_path() const { return temporary_; }
-  void commit();
+  void commit(Durability durability = Durability::power_cuts);
 
  private:
   std::string path_, temporary_;

@@ -1,11 +1,13 @@
-// 1,000 new clips beside an index of 67,000: what it costs to take them over,
-// beside building the whole index anew from the stored vectors (width 512).
-// Embedding is not part of either.
+// 1,000 clips that are new, removed, or described anew (their vectors dropped and
+// made again) beside an index of 67,000: what it costs to take that over, beside
+// building the whole index anew from the stored vectors (width 512). Embedding is
+// not part of either.
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include "bench/machine_peak.h"
@@ -42,88 +44,133 @@ void add_clips(Database& database, int first, int count) {
   database.commit();
 }
 
-/// Two states of one database, and the index of the earlier one.
-struct TwoStates {
+/// Changes that a database can go through beside its index.
+struct Change {
+  const char* name;
+  IndexDifference expected;
+  void (*apply)(Database& database);
+};
+
+std::vector<int64_t> every_67th(const Database& database) {
+  const auto ids = database.embedded_clips(kRetriever);
+  std::vector<int64_t> some;
+  for (size_t i = 0; i < ids.size(); i += kBefore / kNew) some.push_back(ids[i]);
+  return some;
+}
+
+const Change kAdded{
+    "added", {kNew, 0}, [](Database& database) { add_clips(database, kBefore, kNew); }};
+const Change kRemoved{
+    "removed", {0, kNew}, [](Database& database) { database.remove(every_67th(database)); }};
+const Change kDescribed{"described", {0, 0}, [](Database& database) {
+                          const auto ids = every_67th(database);
+                          const auto vectors = database.embeddings(kRetriever, ids);
+                          database.begin();
+                          for (const int64_t id : ids) {
+                            ClipChanges captions;
+                            captions.captions = {"a person does number " + std::to_string(-id)};
+                            database.update_clip(id, captions);
+                          }
+                          database.add_embeddings(kRetriever, vectors);
+                          database.commit();
+                        }};
+
+/// A database, its index, and copies of it that have changed.
+struct States {
   std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("index_bench_" + std::to_string(getpid()));
   std::string index_path = (folder / "motions.index").string();
-  std::optional<Database> before, after;
+  std::optional<Database> before;
+  std::map<std::string, Database> after;  ///< Change::name ->
 
-  TwoStates() {
+  States() {
     std::filesystem::create_directories(folder);
     const std::string early = (folder / "before.sqlite").string();
-    const std::string late = (folder / "after.sqlite").string();
     {
       Database database(early, OpenMode::create);
       add_clips(database, 0, kBefore);
     }
-    std::filesystem::copy_file(early, late);
     before.emplace(early, OpenMode::read_only);
-    after.emplace(late, OpenMode::read_write);
-    add_clips(*after, kBefore, kNew);
+    for (const Change* change : {&kAdded, &kRemoved, &kDescribed}) {
+      const std::string late = (folder / change->name).string();
+      std::filesystem::copy_file(early, late);
+      change->apply(after.try_emplace(change->name, late, OpenMode::read_write).first->second);
+    }
     update_index(index_path, *before, kRetriever);
   }
-  ~TwoStates() {
+  ~States() {
     before.reset();
-    after.reset();
+    after.clear();
     std::filesystem::remove_all(folder);
   }
 };
 
-TwoStates& states() {
-  static TwoStates two;
-  return two;
+States& states() {
+  static States all;
+  return all;
+}
+
+bool is_expected(const IndexDifference& difference, const Change& change) {
+  return difference.added == change.expected.added && difference.dropped == change.expected.dropped;
 }
 
 void index_rebuild(benchmark::State& state) {
   const std::string path = (states().folder / "rebuilt.index").string();
   UpdateOptions options;
   options.rebuild = true;
-  for (auto _ : state) update_index(path, *states().after, kRetriever, options);
+  for (auto _ : state) update_index(path, states().after.at("added"), kRetriever, options);
 }
 
 /// What `remomask index` does after embedding: from the files to the files.
-void index_update_files(benchmark::State& state) {
+void index_update_files(benchmark::State& state, const Change& change) {
+  const Database& after = states().after.at(change.name);
   for (auto _ : state) {
     state.PauseTiming();
     std::filesystem::remove(delta_path(states().index_path));
     state.ResumeTiming();
-    if (update_index(states().index_path, *states().after, kRetriever).difference.added != kNew) {
-      state.SkipWithError("the new clips were not added");
-    }
+    const IndexUpdate made = update_index(states().index_path, after, kRetriever);
+    if (!is_expected(made.difference, change)) state.SkipWithError("other clips have changed");
   }
 }
 
 /// An open index takes the new state over.
-void index_follow(benchmark::State& state) {
+void index_follow(benchmark::State& state, const Change& change) {
+  const Database& after = states().after.at(change.name);
   std::filesystem::remove(delta_path(states().index_path));
   for (auto _ : state) {
     state.PauseTiming();
     auto index = VectorIndex::open(states().index_path, *states().before, kRetriever);
     state.ResumeTiming();
-    if (index.follow(*states().after).added != kNew) {
-      state.SkipWithError("the new clips were not added");
-    }
+    const IndexDifference difference = index.follow(after);
+    if (!is_expected(difference, change)) state.SkipWithError("other clips have changed");
   }
 }
 
 /// What a search pays at its start: reading the base, checking it, following.
 void index_open(benchmark::State& state) {
-  update_index(states().index_path, *states().after, kRetriever);
+  const Database& after = states().after.at("added");
+  update_index(states().index_path, after, kRetriever);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(VectorIndex::open(states().index_path, *states().after, kRetriever));
+    benchmark::DoNotOptimize(VectorIndex::open(states().index_path, after, kRetriever));
   }
 }
 
-BENCHMARK(index_rebuild)->Apply(with_medians);
-BENCHMARK(index_update_files)->Apply(with_medians);
 // What is not timed takes longer than what is: few iterations.
-BENCHMARK(index_follow)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->Repetitions(7)
-    ->ReportAggregatesOnly(true)
-    ->Iterations(3);
+void with_few_iterations(benchmark::internal::Benchmark* bench) {
+  bench->Unit(benchmark::kMillisecond)
+      ->UseRealTime()
+      ->Repetitions(7)
+      ->ReportAggregatesOnly(true)
+      ->Iterations(3);
+}
+
+BENCHMARK(index_rebuild)->Apply(with_medians);
+BENCHMARK_CAPTURE(index_update_files, added, kAdded)->Apply(with_medians);
+BENCHMARK_CAPTURE(index_update_files, removed, kRemoved)->Apply(with_medians);
+BENCHMARK_CAPTURE(index_update_files, described, kDescribed)->Apply(with_medians);
+BENCHMARK_CAPTURE(index_follow, added, kAdded)->Apply(with_few_iterations);
+BENCHMARK_CAPTURE(index_follow, removed, kRemoved)->Apply(with_few_iterations);
+BENCHMARK_CAPTURE(index_follow, described, kDescribed)->Apply(with_few_iterations);
 BENCHMARK(index_open)->Apply(with_medians);
 
 }  // namespace

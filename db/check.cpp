@@ -227,7 +227,7 @@ class Checker {
 CheckReport check_database(const std::string& path, const Monitor& monitor) {
   const SqliteConnection connection(path, SqliteMode::read_only);
   check_schema(connection);
-  require_present_schema(connection);
+  require_readable_schema(connection);
   // All parts look at one state, whatever other programs write.
   connection.execute("BEGIN");
   return Checker(connection, monitor).check();

@@ -1,5 +1,8 @@
 #include "db/database.h"
 
+#include <algorithm>
+#include <array>
+
 #include "base/error.h"
 #include "db/database_impl.h"
 #include "db/schema.h"
@@ -26,7 +29,7 @@ Database::Impl::Impl(const std::string& path, OpenMode mode) : connection(path, 
   if (mode == OpenMode::create && is_empty_database(connection)) create_schema(connection);
   check_schema(connection);
   if (mode == OpenMode::read_only) {
-    require_present_schema(connection);
+    require_readable_schema(connection);
   } else {
     // WAL keeps the file whole at any kill; only a power cut can lose the last
     // commits, and an import repeats those.
@@ -46,6 +49,15 @@ std::string Database::uuid() const { return impl_->required_fact("uuid"); }
 int64_t Database::generation() const {
   return impl_->connection.integer(
       "SELECT CAST(value AS INTEGER) FROM fact WHERE key = 'generation'");
+}
+
+std::string Database::writer_of(int64_t generation) const {
+  if (!impl_->logs_changes()) return "";
+  SqliteStatement row(impl_->connection,
+                      "SELECT token FROM writer WHERE generation <= ? "
+                      "ORDER BY generation DESC LIMIT 1");
+  row.bind(1, generation);
+  return row.step() ? row.text(0) : "";
 }
 
 void Database::begin() { impl_->connection.execute("BEGIN IMMEDIATE"); }
@@ -83,7 +95,8 @@ std::map<std::string, std::string> Database::imported_files(const std::string& s
 }
 
 void Database::set_fact(const std::string& key, const std::string& value) {
-  if (key == "uuid" || key == "generation" || key == "motion_format") {
+  const std::array own = {"uuid", "generation", "changes_since", "motion_format"};
+  if (std::find(own.begin(), own.end(), key) != own.end()) {
     throw Error("the fact '" + key + "' belongs to the database itself; choose another key");
   }
   SqliteStatement(impl_->connection, "INSERT OR REPLACE INTO fact VALUES (?, ?)")

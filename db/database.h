@@ -59,6 +59,12 @@ struct ClipEmbedding {
   std::vector<float> text;    ///< of the captions, mean, L2-normalised; the R_t of this clip
 };
 
+/// Clips of which vectors were stored or removed, ascending.
+struct EmbeddingChanges {
+  std::vector<int64_t> present;  ///< have vectors now
+  std::vector<int64_t> absent;   ///< have none, or are gone
+};
+
 enum class OpenMode { read_only, read_write, create };
 
 /// The motion database: one SQLite file (WAL), the truth of everything that is
@@ -67,7 +73,7 @@ class Database {
  public:
   /// Throws Error when the file is missing, locked, not a database, or made by
   /// a newer program. A database of an older version is upgraded when it is
-  /// opened for writing, and refused when it is opened for reading.
+  /// opened for writing; one of format 1 is refused when it is opened for reading.
   Database(const std::string& path, OpenMode mode);
   ~Database();
   Database(Database&&) noexcept;
@@ -78,6 +84,10 @@ class Database {
   std::string uuid() const;
   /// Grows with every change of clips or embeddings: an index knows its state.
   int64_t generation() const;
+  /// Random token of the Database object that wrote this generation; empty when
+  /// that was in format 2. With uuid and generation it names a state: copies
+  /// that were changed apart reach the same generation by other writers.
+  std::string writer_of(int64_t generation) const;
 
   /// All statements between begin and commit are stored together or not at all.
   void begin();
@@ -133,6 +143,15 @@ class Database {
                                         const std::vector<int64_t>& ids) const;
   /// Ids, ascending, of the clips that this retriever has embedded; reads no vector.
   std::vector<int64_t> embedded_clips(const std::string& retriever_hash) const;
+  /// Which vectors of this retriever have changed after that generation; costs no
+  /// more than they. Nothing when the log of the changes does not reach so far
+  /// back, as in a database of format 2.
+  std::optional<EmbeddingChanges> embedding_changes(const std::string& retriever_hash,
+                                                    int64_t generation) const;
+  /// Motion vectors alone, [ids][width] in the order of `ids`. Throws Error when
+  /// a clip has none or one of another width.
+  std::vector<float> motion_vectors(const std::string& retriever_hash,
+                                    const std::vector<int64_t>& ids, int width) const;
   /// Retrievers of which vectors are stored.
   std::vector<std::string> retrievers() const;
   /// Of one clip; nothing when this retriever has not embedded it.

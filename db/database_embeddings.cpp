@@ -1,8 +1,25 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
 #include "base/error.h"
 #include "db/database.h"
 #include "db/database_impl.h"
 
 namespace remomask {
+
+namespace {
+
+Error lacks_vectors(const std::string& path, int64_t id) {
+  return Error(
+      fmt::format("{}: clip number {} has no vectors of this retriever; "
+                  "run: remomask index {}",
+                  path, id, path));
+}
+
+}  // namespace
 
 void Database::store_embeddings(const std::string& retriever_hash,
                                 const std::vector<ClipEmbedding>& embeddings) {
@@ -60,10 +77,7 @@ std::vector<ClipEmbedding> Database::embeddings(const std::string& retriever_has
                       "WHERE retriever_hash = ? AND clip_id = ?");
   for (const int64_t id : ids) {
     row.bind(1, retriever_hash).bind(2, id);
-    if (!row.step()) {
-      throw Error(path() + ": clip number " + std::to_string(id) +
-                  " has no vectors of this retriever; run: remomask index " + path());
-    }
+    if (!row.step()) throw lacks_vectors(path(), id);
     embeddings.push_back({id, row.floats(0), row.floats(1), row.floats(2)});
     row.reset();
   }
@@ -76,6 +90,51 @@ std::vector<int64_t> Database::embedded_clips(const std::string& retriever_hash)
   rows.bind(1, retriever_hash);
   while (rows.step()) ids.push_back(rows.integer(0));
   return ids;
+}
+
+std::optional<EmbeddingChanges> Database::embedding_changes(const std::string& retriever_hash,
+                                                            int64_t generation) const {
+  const ReadSnapshot snapshot(*this);
+  if (!impl_->logs_changes()) return std::nullopt;
+  if (generation < impl_->connection.integer(kChangesSince)) return std::nullopt;
+  SqliteStatement rows(impl_->connection, kEmbeddingChanges);
+  rows.bind(1, retriever_hash).bind(2, generation);
+  std::vector<std::pair<int64_t, bool>> changed;
+  while (rows.step()) changed.emplace_back(rows.integer(0), rows.integer(1) != 0);
+  // In the log a clip comes once a generation.
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  EmbeddingChanges changes;
+  for (const auto& [id, present] : changed) {
+    (present ? changes.present : changes.absent).push_back(id);
+  }
+  return changes;
+}
+
+std::vector<float> Database::motion_vectors(const std::string& retriever_hash,
+                                            const std::vector<int64_t>& ids, int width) const {
+  const ReadSnapshot snapshot(*this);
+  const auto numbers = static_cast<size_t>(width);
+  std::vector<float> vectors(ids.size() * numbers);
+  float* target = vectors.data();
+  SqliteStatement row(impl_->connection,
+                      "SELECT motion FROM embedding WHERE retriever_hash = ? AND clip_id = ?");
+  row.bind(1, retriever_hash);
+  for (const int64_t id : ids) {
+    row.bind(2, id);
+    if (!row.step()) throw lacks_vectors(path(), id);
+    const auto stored = row.blob(0);
+    if (stored.size() != numbers * sizeof(float) || stored.empty()) {
+      throw Error(
+          fmt::format("{}: the vector of clip number {} has {} bytes instead of {}; "
+                      "store the vectors of this retriever again",
+                      path(), id, stored.size(), numbers * sizeof(float)));
+    }
+    std::memcpy(target, stored.data(), stored.size());
+    target += numbers;
+    row.reset();
+  }
+  return vectors;
 }
 
 std::vector<std::string> Database::retrievers() const {

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "db/database.h"
+#include "db/schema.h"
 #include "db/sqlite.h"
 
 namespace remomask {
@@ -11,8 +12,17 @@ namespace remomask {
 constexpr const char* kEmbeddedClips =
     "SELECT clip_id FROM embedding WHERE retriever_hash = ? ORDER BY clip_id";
 
+/// Of one retriever, after one generation; answered by indexes alone as well.
+constexpr const char* kEmbeddingChanges =
+    "SELECT clip_id, EXISTS (SELECT 1 FROM embedding WHERE embedding.retriever_hash = ?1 AND "
+    "embedding.clip_id = embedding_change.clip_id) "
+    "FROM embedding_change WHERE retriever_hash = ?1 AND generation > ?2";
+constexpr const char* kChangesSince =
+    "SELECT CAST(value AS INTEGER) FROM fact WHERE key = 'changes_since'";
+
 struct Database::Impl {
   SqliteConnection connection;
+  const std::string token = random_uuid();  ///< signs what is written through this object
 
   Impl(const std::string& path, OpenMode mode);
 
@@ -26,7 +36,16 @@ struct Database::Impl {
   void grow_generation() {
     connection.execute(
         "UPDATE fact SET value = CAST(value AS INTEGER) + 1 WHERE key = 'generation'");
+    SqliteStatement(connection,
+                    "INSERT INTO writer SELECT CAST(value AS INTEGER), ?1 FROM fact "
+                    "WHERE key = 'generation' AND "
+                    "(SELECT token FROM writer ORDER BY generation DESC LIMIT 1) IS NOT ?1")
+        .bind(1, token)
+        .run();
   }
+
+  /// Asked each time: another program may upgrade the file.
+  bool logs_changes() const { return connection.integer("PRAGMA user_version") >= kLoggingVersion; }
 
   std::optional<std::string> fact(const std::string& key) const {
     SqliteStatement statement(connection, "SELECT value FROM fact WHERE key = ?");

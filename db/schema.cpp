@@ -105,6 +105,35 @@ END;
 )sql";
 static_assert(kCaptionsOfClip == 1024, "the schema says 1024");
 
+// Triggers also see what deleting a clip takes with it. A change belongs to the
+// generation that its transaction is about to make.
+constexpr const char* kVersion3 = R"sql(
+CREATE TABLE embedding_change (
+  retriever_hash TEXT NOT NULL,
+  generation INTEGER NOT NULL,
+  clip_id INTEGER NOT NULL,
+  PRIMARY KEY (retriever_hash, generation, clip_id)
+) WITHOUT ROWID;
+
+CREATE TRIGGER embedding_inserted AFTER INSERT ON embedding BEGIN
+  INSERT OR IGNORE INTO embedding_change
+    SELECT new.retriever_hash, CAST(value AS INTEGER) + 1, new.clip_id
+    FROM fact WHERE key = 'generation';
+END;
+CREATE TRIGGER embedding_deleted AFTER DELETE ON embedding BEGIN
+  INSERT OR IGNORE INTO embedding_change
+    SELECT old.retriever_hash, CAST(value AS INTEGER) + 1, old.clip_id
+    FROM fact WHERE key = 'generation';
+END;
+
+CREATE TABLE writer (
+  generation INTEGER PRIMARY KEY,
+  token TEXT NOT NULL
+);
+
+INSERT INTO fact SELECT 'changes_since', value FROM fact WHERE key = 'generation';
+)sql";
+
 void set_version(const SqliteConnection& connection, int64_t version) {
   connection.execute(("PRAGMA user_version = " + std::to_string(version)).c_str());
 }
@@ -138,6 +167,13 @@ void upgrade_from_1(const SqliteConnection& connection) {
   set_version(connection, 2);
 }
 
+void upgrade_from_2(const SqliteConnection& connection) {
+  connection.execute(kVersion3);
+  set_version(connection, 3);
+}
+
+}  // namespace
+
 std::string random_uuid() {
   std::random_device device;
   constexpr char kDigits[] = "0123456789abcdef";
@@ -151,8 +187,6 @@ std::string random_uuid() {
   return uuid;
 }
 
-}  // namespace
-
 bool is_empty_database(const SqliteConnection& connection) {
   return connection.integer("SELECT count(*) FROM sqlite_master") == 0 &&
          connection.integer("PRAGMA application_id") == 0;
@@ -165,6 +199,7 @@ void create_schema(const SqliteConnection& connection) {
   if (!is_empty_database(connection)) return;
   connection.execute(kVersion1);
   connection.execute(kVersion2);
+  connection.execute(kVersion3);
   SqliteStatement(connection, "INSERT INTO fact VALUES ('uuid', ?)").bind(1, random_uuid()).run();
   connection.execute(("PRAGMA application_id = " + std::to_string(kApplicationId)).c_str());
   set_version(connection, kSchemaVersion);
@@ -193,6 +228,7 @@ void upgrade_schema(const SqliteConnection& connection) {
   SqliteScope scope(connection);
   // Another program may have done it between our look and our lock.
   if (connection.integer("PRAGMA user_version") == 1) upgrade_from_1(connection);
+  if (connection.integer("PRAGMA user_version") == 2) upgrade_from_2(connection);
   scope.commit();
 }
 
@@ -202,9 +238,9 @@ void renew_identity(const SqliteConnection& connection) {
       .run();
 }
 
-void require_present_schema(const SqliteConnection& connection) {
+void require_readable_schema(const SqliteConnection& connection) {
   const int64_t version = connection.integer("PRAGMA user_version");
-  if (version == kSchemaVersion) return;
+  if (version >= kOldestReadableVersion) return;
   throw Error(connection.path() + ": was made by an older version of remomask (format " +
               std::to_string(version) + "); run: remomask db upgrade " + connection.path());
 }

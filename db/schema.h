@@ -6,7 +6,11 @@ namespace remomask {
 
 /// Marks a SQLite file as a motion database ("RMMK").
 constexpr int64_t kApplicationId = 0x524d4d4b;
-constexpr int64_t kSchemaVersion = 2;
+constexpr int64_t kSchemaVersion = 3;
+/// Files from this version on can be read without an upgrade.
+constexpr int64_t kOldestReadableVersion = 2;
+/// Of the version that keeps a log of the changed vectors and of who wrote.
+constexpr int64_t kLoggingVersion = 3;
 
 /// Makes the tables in an empty file.
 void create_schema(const SqliteConnection& connection);
@@ -18,8 +22,11 @@ void check_schema(const SqliteConnection& connection);
 /// stays, as no clip and no vector changes. Needs a connection that may write.
 void upgrade_schema(const SqliteConnection& connection);
 
-/// Throws Error that says how to upgrade when the file is of an older version.
-void require_present_schema(const SqliteConnection& connection);
+/// Throws Error that says how to upgrade when the file is too old to be read.
+void require_readable_schema(const SqliteConnection& connection);
+
+/// 36 characters as in RFC 4122, version 4.
+std::string random_uuid();
 
 /// Gives the database another uuid.
 void renew_identity(const SqliteConnection& connection);

@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -66,6 +67,11 @@ class SqliteStatement {
   int64_t bytes(int column) const { return sqlite3_column_bytes(statement_, column); }
   double real(int column) const { return sqlite3_column_double(statement_, column); }
   std::string text(int column) const;
+  /// Of a blob as it lies there, valid until the next step.
+  std::span<const std::byte> blob(int column) const {
+    return {static_cast<const std::byte*>(sqlite3_column_blob(statement_, column)),
+            static_cast<size_t>(sqlite3_column_bytes(statement_, column))};
+  }
   /// Throws Error when the blob is not whole floats.
   std::vector<float> floats(int column) const;
 

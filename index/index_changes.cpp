@@ -17,6 +17,7 @@ namespace remomask {
 
 namespace {
 
+constexpr size_t kDescriptionRoom = 1024;  // a description is shorter: no second allocation
 constexpr std::string_view kDeltaMagic = "RMMDELTA";
 constexpr double kFoldShareOfExact = 0.10, kFoldShareOfApproximate = 0.02;
 constexpr const char* kUpdate = "run: remomask index DB";
@@ -47,6 +48,39 @@ void replace_added(IndexChanges& changes, const Ids& wanted, const Ids& missing,
   }
   changes.added = wanted;
   changes.vectors = std::move(vectors);
+}
+
+Ids common_ids(const Ids& left, const Ids& right) {
+  Ids result;
+  std::set_intersection(left.begin(), left.end(), right.begin(), right.end(),
+                        std::back_inserter(result));
+  return result;
+}
+
+/// Of lists that have no id in common.
+Ids merged_ids(const Ids& left, const Ids& right) {
+  Ids result(left.size() + right.size());
+  std::merge(left.begin(), left.end(), right.begin(), right.end(), result.begin());
+  return result;
+}
+
+/// Among others, those whose vectors came or went since the stamp.
+EmbeddingChanges changed_clips(const Database& database, const IndexStamp& stamp,
+                               const Ids& former) {
+  auto logged = database.embedding_changes(stamp.retriever_hash, stamp.generation);
+  if (logged) return std::move(*logged);
+  const Ids now = database.embedded_clips(stamp.retriever_hash);
+  return {ids_without(now, former), ids_without(former, now)};
+}
+
+std::vector<float> new_vectors(const Database& database, const std::string& retriever_hash,
+                               const Ids& ids, int width) {
+  std::vector<float> vectors = database.motion_vectors(retriever_hash, ids, width);
+  for (size_t i = 0; i < ids.size(); ++i) {
+    require_unit_length(vectors.data() + i * static_cast<size_t>(width), width,
+                        fmt::format("the vector of clip number {}", ids[i]));
+  }
+  return vectors;
 }
 
 template <typename Value>
@@ -82,6 +116,11 @@ std::vector<float> motion_vectors(const Database& database,
   return vectors;
 }
 
+IndexStamp present_stamp(const Database& database, const std::string& retriever_hash) {
+  const int64_t generation = database.generation();
+  return {database.uuid(), generation, retriever_hash, database.writer_of(generation)};
+}
+
 void require_same_origin(const std::string& path, const IndexStamp& stamp, const Database& database,
                          const std::string& retriever_hash) {
   if (stamp.retriever_hash != retriever_hash) {
@@ -94,38 +133,40 @@ void require_same_origin(const std::string& path, const IndexStamp& stamp, const
   }
   // The caller's snapshot may be older than a file that was just written: what
   // counts is the latest state.
-  if (stamp.generation > database.generation() &&
-      stamp.generation > Database(database.path(), OpenMode::read_only).generation()) {
+  std::optional<Database> latest;
+  if (stamp.generation > database.generation())
+    latest.emplace(database.path(), OpenMode::read_only);
+  const Database& reached = latest ? *latest : database;
+  if (stamp.generation > reached.generation()) {
     throw Error(path + ": this index is of a later state than " + database.path() +
                 " (is that an older copy?); run: remomask index DB");
   }
+  if (stamp.writer != reached.writer_of(stamp.generation)) {
+    throw Error(path + ": this index is of a copy of " + database.path() +
+                " that was changed apart from it; run: remomask index DB");
+  }
 }
 
-FollowedState follow_database(const Database& database, const std::vector<int64_t>& base_ids,
-                              int width, IndexStamp& stamp, IndexChanges& changes) {
+FollowedState follow_database(const Database& database, const Ids& base_ids, int width,
+                              IndexStamp& stamp, IndexChanges& changes) {
   FollowedState result;
-  Ids former = ids_without(base_ids, changes.dropped);
-  former.insert(former.end(), changes.added.begin(), changes.added.end());
-  std::inplace_merge(former.begin(),
-                     former.end() - static_cast<std::ptrdiff_t>(changes.added.size()),
-                     former.end());
-  const int64_t generation = database.generation();
-  if (generation == stamp.generation) {
+  Ids former = merged_ids(ids_without(base_ids, changes.dropped), changes.added);
+  IndexStamp now = present_stamp(database, stamp.retriever_hash);
+  if (now.generation == stamp.generation) {
     result.ids = std::move(former);
     return result;
   }
-  result.ids = database.embedded_clips(stamp.retriever_hash);
-  const Ids wanted = ids_without(result.ids, base_ids);
-  const Ids missing = ids_without(wanted, changes.added);
-  std::vector<float> vectors;
-  if (!missing.empty()) {
-    vectors = motion_vectors(database, database.embeddings(stamp.retriever_hash, missing), width);
-  }
-  replace_added(changes, wanted, missing, vectors, width);
-  changes.dropped = ids_without(base_ids, result.ids);
-  stamp.generation = generation;
-  result.difference.added = static_cast<int64_t>(ids_without(result.ids, former).size());
-  result.difference.dropped = static_cast<int64_t>(ids_without(former, result.ids).size());
+  const EmbeddingChanges changed = changed_clips(database, stamp, former);
+  const Ids came = ids_without(changed.present, former);
+  const Ids went = common_ids(changed.absent, former);
+  const Ids missing = ids_without(came, base_ids);
+  const auto vectors = new_vectors(database, stamp.retriever_hash, missing, width);
+  replace_added(changes, merged_ids(ids_without(changes.added, went), missing), missing, vectors,
+                width);
+  changes.dropped = merged_ids(ids_without(changes.dropped, came), common_ids(went, base_ids));
+  result.ids = merged_ids(ids_without(former, went), came);
+  result.difference = {static_cast<int64_t>(came.size()), static_cast<int64_t>(went.size())};
+  stamp = std::move(now);
   return result;
 }
 
@@ -143,16 +184,25 @@ void write_index_delta(const std::string& path, const IndexHeader& base, const I
     return;
   }
   std::string body;
+  body.reserve(sizeof(float) * delta.changes.vectors.size() +
+               sizeof(int64_t) * (delta.changes.added.size() + delta.changes.dropped.size()) +
+               kDescriptionRoom);
   append_values(body, delta.changes.added);
   append_values(body, delta.changes.dropped);
   append_values(body, delta.changes.vectors);
-  const nlohmann::json description = {
-      {"format", "remomask index delta"},        {"base", base.checksum},
-      {"database", delta.stamp.database_uuid},   {"generation", delta.stamp.generation},
-      {"retriever", delta.stamp.retriever_hash}, {"added", delta.changes.added.size()},
-      {"dropped", delta.changes.dropped.size()}, {"width", base.width},
-      {"checksum", content_hash(body)}};
-  write_file_atomically(delta_path(path), body + describe(description, kDeltaMagic));
+  const nlohmann::json description = {{"format", "remomask index delta"},
+                                      {"base", base.checksum},
+                                      {"database", delta.stamp.database_uuid},
+                                      {"generation", delta.stamp.generation},
+                                      {"retriever", delta.stamp.retriever_hash},
+                                      {"added", delta.changes.added.size()},
+                                      {"dropped", delta.changes.dropped.size()},
+                                      {"width", base.width},
+                                      {"writer", delta.stamp.writer},
+                                      {"checksum", content_hash(body)}};
+  body += describe(description, kDeltaMagic);
+  // Not waiting for the disk: the database's own last commits do not either.
+  write_file_atomically(delta_path(path), body, Durability::kills);
 }
 
 std::optional<IndexDelta> read_index_delta(const std::string& path, const IndexHeader& base) {
@@ -168,7 +218,7 @@ std::optional<IndexDelta> read_index_delta(const std::string& path, const IndexH
     IndexDelta delta;
     delta.stamp = {description.at("database").get<std::string>(),
                    description.at("generation").get<int64_t>(),
-                   description.at("retriever").get<std::string>()};
+                   description.at("retriever").get<std::string>(), description.value("writer", "")};
     const auto added = description.at("added").get<size_t>();
     const auto dropped = description.at("dropped").get<size_t>();
     const auto numbers = added * static_cast<size_t>(base.width);

@@ -27,14 +27,18 @@ struct IndexChanges {
 std::vector<float> motion_vectors(const Database& database,
                                   const std::vector<ClipEmbedding>& embeddings, int width);
 
+IndexStamp present_stamp(const Database& database, const std::string& retriever_hash);
+
 /// Throws Error when the index at `path` with this stamp is of another database
-/// or retriever, or of a state that this database has not reached.
+/// or retriever, of a state that this database has not reached, or of a copy of
+/// it that was changed apart.
 void require_same_origin(const std::string& path, const IndexStamp& stamp, const Database& database,
                          const std::string& retriever_hash);
 
 /// Brings `changes` and `stamp` to the database's present state, which the
-/// caller holds by a ReadSnapshot. Reads the vectors of new ids only. Returns
-/// the ids that are present now, ascending, and what was new among them.
+/// caller holds by a ReadSnapshot. Reads what has changed only, where the database
+/// still knows that (Database::embedding_changes), else a list of all ids. Returns the ids that are
+/// present now, ascending, and what was new among them.
 struct FollowedState {
   std::vector<int64_t> ids;
   IndexDifference difference;

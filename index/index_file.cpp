@@ -72,7 +72,7 @@ IndexParts split_index_file(const std::string& path, std::string_view content) {
   IndexHeader& header = result.header;
   header.stamp = {description.at("database").get<std::string>(),
                   description.at("generation").get<int64_t>(),
-                  description.at("retriever").get<std::string>()};
+                  description.at("retriever").get<std::string>(), description.value("writer", "")};
   header.type.factory = description.at("factory").get<std::string>();
   // Version 1 does not say these; its default was Flat.
   const std::string& factory = header.type.factory;
@@ -163,17 +163,13 @@ std::string write_index_file(const std::string& path, const IndexStamp& stamp,
   PieceWriter writer(file.temporary_path());
   const size_t faiss_bytes = writer.add(index);
   const size_t body_bytes = exact ? writer.add(*exact) : faiss_bytes;
-  nlohmann::json description = {{"format", "remomask index"},
-                                {"database", stamp.database_uuid},
-                                {"generation", stamp.generation},
-                                {"retriever", stamp.retriever_hash},
-                                {"requested", type.requested},
-                                {"factory", type.factory},
-                                {"search_parameters", type.search_parameters},
-                                {"count", index.ntotal},
-                                {"width", index.d},
-                                {"faiss_bytes", faiss_bytes},
-                                {"exact_bytes", body_bytes - faiss_bytes}};
+  nlohmann::json description = {
+      {"format", "remomask index"},     {"database", stamp.database_uuid},
+      {"generation", stamp.generation}, {"retriever", stamp.retriever_hash},
+      {"writer", stamp.writer},         {"requested", type.requested},
+      {"factory", type.factory},        {"search_parameters", type.search_parameters},
+      {"count", index.ntotal},          {"width", index.d},
+      {"faiss_bytes", faiss_bytes},     {"exact_bytes", body_bytes - faiss_bytes}};
   if (type.recall) description["recall_at_10"] = *type.recall;
   std::string checksum;
   {

@@ -112,7 +112,7 @@ VectorIndex::VectorIndex(IndexStamp stamp, const std::vector<int64_t>& ids,
 VectorIndex VectorIndex::build(const Database& database, const std::string& retriever_hash,
                                const VectorIndexOptions& options, const Monitor& monitor) {
   const ReadSnapshot snapshot(database);
-  IndexStamp stamp{database.uuid(), database.generation(), retriever_hash};
+  IndexStamp stamp = present_stamp(database, retriever_hash);
   const std::vector<ClipEmbedding> embeddings = database.embeddings(retriever_hash);
   if (embeddings.empty()) {
     throw Error(database.path() + ": has no vectors of this retriever (" + retriever_hash +
@@ -173,7 +173,9 @@ void VectorIndex::save(const std::string& path) {
 }
 
 void VectorIndex::require_current(const Database& database) const {
-  if (stamp().database_uuid != database.uuid() || stamp().generation != database.generation()) {
+  const IndexStamp now = present_stamp(database, stamp().retriever_hash);
+  if (stamp().database_uuid != now.database_uuid || stamp().generation != now.generation ||
+      stamp().writer != now.writer) {
     throw Error(database.path() +
                 ": the database has changed since this index was opened; "
                 "start again");

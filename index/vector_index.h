@@ -36,6 +36,7 @@ struct IndexStamp {
   std::string database_uuid;
   int64_t generation = 0;
   std::string retriever_hash;
+  std::string writer = "";  ///< Database::writer_of(generation)
 };
 
 struct VectorHit {

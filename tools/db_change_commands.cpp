@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
 #include "base/error.h"
 #include "db/add_files.h"
+#include "db/storing_database.h"
 #include "tools/clip_selection.h"
 #include "tools/db_commands.h"
 
@@ -38,8 +38,8 @@ void register_add(CLI::App& group, Program& program) {
                       "name of a shipped map or a map file; default: found by joint names");
   command->callback([options, &program] {
     options->add.labels = parse_labels(options->labels);
-    const bool exists = std::filesystem::exists(options->database);
-    Database database(options->database, exists ? OpenMode::read_write : OpenMode::create);
+    StoringDatabase storing(options->database);
+    Database& database = *storing;
     const AddReport report = add_files(database, options->files, options->add);
     nlohmann::json clips = nlohmann::json::array(), rejected = nlohmann::json::array();
     for (const auto& [id, name] : report.clips) clips.push_back({{"id", id}, {"name", name}});

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "base/error.h"
 #include "base/machine.h"
 #include "db/import.h"
+#include "db/storing_database.h"
 #include "tools/program.h"
 
 namespace remomask {
@@ -58,8 +57,8 @@ void register_import(CLI::App& app, Program& program) {
       ->capture_default_str();
   command->callback([options, &program] {
     options->import.threads = program.threads > 0 ? program.threads : available_cpus();
-    const bool exists = std::filesystem::exists(options->database);
-    Database database(options->database, exists ? OpenMode::read_write : OpenMode::create);
+    StoringDatabase storing(options->database);
+    Database& database = *storing;
     const ImportReport report = import_folder(database, options->import, program.monitor());
     program.finish_progress();
     if (program.json) return program.print_json(import_report_json(report));

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "base/error.h"
 #include "db/clip_hash.h"
 #include "db/database.h"
+#include "db/storing_database.h"
 #include "motion/procedural.h"
 #include "tools/program.h"
 
@@ -27,8 +26,8 @@ void register_procedural(CLI::App& app, Program& program) {
   command->add_option("--seed", options->make.seed, "other seed, other clips")
       ->capture_default_str();
   command->callback([options, &program] {
-    const bool exists = std::filesystem::exists(options->database);
-    Database database(options->database, exists ? OpenMode::read_write : OpenMode::create);
+    StoringDatabase storing(options->database);
+    Database& database = *storing;
     const Monitor monitor = program.monitor();
     const auto clips = make_procedural_clips(options->make);
     int added = 0, known = 0;

@@ -132,6 +132,81 @@ TEST_F(ClipChangesTest, EmbeddedClipsReadsAnIndexAlone) {
   EXPECT_EQ(text.find("TEMP B-TREE"), std::string::npos) << text;
 }
 
+TEST_F(ClipChangesTest, TheLogOfVectorsSaysWhatChangedSince) {
+  const int64_t start = database_.generation();
+  const auto changes = [&](int64_t since, const std::string& retriever = "r") {
+    const auto found = database_.embedding_changes(retriever, since);
+    return std::pair(found->present, found->absent);
+  };
+  EXPECT_EQ(changes(start), std::pair(Ids{}, Ids{}));
+  EXPECT_EQ(changes(0).first, database_.embedded_clips("r"));
+  ClipChanges captions, tags;
+  captions.captions = {"someone waves."};
+  tags.tags = {"good"};
+  database_.update_clip(ids_[1], tags);  // no vector changes
+  EXPECT_EQ(changes(start), std::pair(Ids{}, Ids{}));
+  database_.update_clip(ids_[1], captions);
+  const int64_t dropped = database_.generation();
+  EXPECT_EQ(changes(start), std::pair(Ids{}, Ids{ids_[1]}));
+  database_.add_embeddings("r", {{ids_[1], {0.f, 1.f}, {1.f}, {}}});
+  database_.remove({ids_[2]});  // takes its vectors with it
+  EXPECT_EQ(changes(start), std::pair(Ids{ids_[1]}, Ids{ids_[2]}));
+  EXPECT_EQ(changes(dropped), std::pair(Ids{ids_[1]}, Ids{ids_[2]}));
+  EXPECT_EQ(changes(database_.generation()), std::pair(Ids{}, Ids{}));
+  EXPECT_EQ(changes(0, "unknown"), std::pair(Ids{}, Ids{}));
+  database_.begin();
+  database_.remove({ids_[0]});
+  database_.rollback();
+  EXPECT_EQ(changes(start), std::pair(Ids{ids_[1]}, Ids{ids_[2]}));
+}
+
+TEST_F(ClipChangesTest, TheLogOfVectorsIsReadByIndexesAlone) {
+  const SqliteConnection connection(folder_ / "d", SqliteMode::read_only);
+  SqliteStatement plan(connection,
+                       (std::string("EXPLAIN QUERY PLAN ") + kEmbeddingChanges).c_str());
+  std::string text;
+  while (plan.step()) text += plan.text(3) + "; ";
+  EXPECT_NE(text.find("(retriever_hash=? AND generation>?)"), std::string::npos) << text;
+  EXPECT_NE(text.find("SEARCH embedding USING COVERING INDEX"), std::string::npos) << text;
+  EXPECT_EQ(text.find("SCAN"), std::string::npos) << text;
+}
+
+TEST_F(ClipChangesTest, MotionVectorsAlone) {
+  database_.add_embeddings("s", {{ids_[0], {1.f, 2.f}, {9.f}, {}}, {ids_[2], {3.f, 4.f}, {}, {}}});
+  EXPECT_EQ(database_.motion_vectors("s", {ids_[2], ids_[0]}, 2),
+            (std::vector<float>{3.f, 4.f, 1.f, 2.f}));
+  EXPECT_TRUE(database_.motion_vectors("s", {}, 2).empty());
+  EXPECT_NE(error_of([&] { database_.motion_vectors("r", {ids_[2] + 1}, 2); }).find("no vectors"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { database_.motion_vectors("s", {ids_[0]}, 3); }).find("8 bytes instead"),
+            std::string::npos);
+}
+
+TEST_F(ClipChangesTest, CopiesThatAreChangedApartHaveOtherWriters) {
+  const int64_t common = database_.generation();
+  const std::string writer = database_.writer_of(common);
+  EXPECT_EQ(writer.size(), 36u);
+  EXPECT_EQ(database_.writer_of(0), "");
+  run_sql(folder_ / "d", ("VACUUM INTO '" + folder_ / "copy" + "'").c_str());
+  Database copy(folder_ / "copy", OpenMode::read_write);
+  database_.remove({ids_[0]});
+  copy.remove({ids_[1]});
+  copy.remove({ids_[2]});
+  EXPECT_EQ(copy.uuid(), database_.uuid());
+  EXPECT_EQ(copy.generation(), database_.generation() + 1);
+  EXPECT_EQ(copy.writer_of(common), writer);
+  // The object here went on as it was: no new token, that of the copy tells.
+  EXPECT_EQ(database_.writer_of(common + 1), writer);
+  EXPECT_NE(copy.writer_of(common + 1), writer);
+  EXPECT_EQ(copy.writer_of(common + 2), copy.writer_of(common + 1));
+  {
+    Database second(folder_ / "d", OpenMode::read_write);
+    second.remove({ids_[1]});
+  }
+  EXPECT_NE(database_.writer_of(common + 2), writer);
+  EXPECT_EQ(database_.writer_of(common + 1), writer);
+}
+
 TEST_F(ClipChangesTest, SpeedIsThePathOverTheGroundInMetresASecond) {
   Motion motion(3, 22);
   motion.set(1, 0, Vec3(0.3, 5, 0.4));  // half a metre in a twentieth of a second

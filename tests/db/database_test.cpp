@@ -244,7 +244,7 @@ TEST(Database, OtherProgramsAndNewerVersionsAreRefused) {
             }).find("is not a motion database"),
             std::string::npos);
   { Database database(folder / "new", OpenMode::create); }
-  run_sql(folder / "new", "PRAGMA user_version = 3");
+  run_sql(folder / "new", "PRAGMA user_version = 4");
   EXPECT_NE(error_of([&] { Database(folder / "new", OpenMode::read_only); }).find("newer version"),
             std::string::npos);
 }

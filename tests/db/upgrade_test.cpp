@@ -8,8 +8,16 @@
 namespace remomask {
 namespace {
 
-// Takes away what version 2 added.
-constexpr const char* kDowngrade = R"sql(
+// Takes away what version 3 added.
+constexpr const char* kDowngradeTo2 = R"sql(
+DROP TABLE embedding_change; DROP TABLE writer;
+DROP TRIGGER embedding_inserted; DROP TRIGGER embedding_deleted;
+DELETE FROM fact WHERE key = 'changes_since';
+PRAGMA user_version = 2;
+)sql";
+
+// And version 2.
+constexpr const char* kDowngradeTo1 = R"sql(
 DROP TRIGGER caption_inserted; DROP TRIGGER caption_deleted; DROP TRIGGER caption_updated;
 DROP TABLE caption_words; DROP VIEW caption_row; DROP TABLE tag;
 DROP INDEX embedding_by_retriever;
@@ -40,6 +48,11 @@ class UpgradeTest : public testing::Test {
     uuid_ = database.uuid();
   }
 
+  void downgrade(int version) {
+    run_sql(path_, kDowngradeTo2);
+    if (version == 1) run_sql(path_, kDowngradeTo1);
+  }
+
   TestFolder folder_;
   std::string path_ = folder_ / "d";
   nlohmann::json before_;
@@ -50,7 +63,7 @@ class UpgradeTest : public testing::Test {
 
 TEST_F(UpgradeTest, AnOldFileBecomesWhatANewOneIs) {
   const std::string schema = schema_of(path_);
-  run_sql(path_, kDowngrade);
+  downgrade(1);
   ASSERT_NE(schema_of(path_), schema);
   const Database database(path_, OpenMode::read_write);
   EXPECT_EQ(schema_of(path_), schema);
@@ -65,7 +78,7 @@ TEST_F(UpgradeTest, AnOldFileBecomesWhatANewOneIs) {
 }
 
 TEST_F(UpgradeTest, ReadingAnOldFileSaysHowToUpgradeAndChangesNothing) {
-  run_sql(path_, kDowngrade);
+  downgrade(1);
   const std::string schema = schema_of(path_);
   const std::string message = error_of([&] { Database(path_, OpenMode::read_only); });
   EXPECT_NE(message.find("older version"), std::string::npos) << message;
@@ -73,8 +86,32 @@ TEST_F(UpgradeTest, ReadingAnOldFileSaysHowToUpgradeAndChangesNothing) {
   EXPECT_EQ(schema_of(path_), schema);
 }
 
+TEST_F(UpgradeTest, Format2IsReadAsItIs) {
+  downgrade(2);
+  const std::string schema = schema_of(path_);
+  const Database database(path_, OpenMode::read_only);
+  EXPECT_EQ(describe_database(database), before_);
+  EXPECT_EQ(database.embedded_clips("r").size(), 1u);
+  EXPECT_FALSE(database.embedding_changes("r", 0));
+  EXPECT_EQ(database.writer_of(database.generation()), "");
+  EXPECT_EQ(schema_of(path_), schema);
+}
+
+TEST_F(UpgradeTest, TheLogOfChangesBeginsWithTheUpgrade) {
+  downgrade(2);
+  Database database(path_, OpenMode::read_write);
+  EXPECT_FALSE(database.embedding_changes("r", generation_ - 1));
+  EXPECT_EQ(database.writer_of(generation_), "");
+  ASSERT_TRUE(database.embedding_changes("r", generation_));
+  EXPECT_TRUE(database.embedding_changes("r", generation_)->present.empty());
+  const int64_t b = *database.find_name("b");
+  database.add_embeddings("r", {{b, {1.f}, {2.f}, {3.f}}});
+  EXPECT_EQ(database.embedding_changes("r", generation_)->present, (std::vector<int64_t>{b}));
+  EXPECT_NE(database.writer_of(database.generation()), "");
+}
+
 TEST_F(UpgradeTest, AFailingUpgradeLeavesTheOldFile) {
-  run_sql(path_, kDowngrade);
+  downgrade(1);
   run_sql(path_, "UPDATE motion SET positions = x'00000000' WHERE clip_id = 2");
   const std::string schema = schema_of(path_);
   const std::string message = error_of([&] { Database(path_, OpenMode::read_write); });
@@ -85,14 +122,14 @@ TEST_F(UpgradeTest, AFailingUpgradeLeavesTheOldFile) {
 }
 
 TEST_F(UpgradeTest, CommandReportsAndGivesPagesBack) {
-  run_sql(path_, kDowngrade);
+  downgrade(1);
   run_sql(path_, "CREATE TABLE t (x); INSERT INTO t VALUES (zeroblob(1000000)); DROP TABLE t");
   const UpgradeReport first = upgrade_database(path_);
   EXPECT_EQ(first.version_before, 1);
-  EXPECT_EQ(first.version, 2);
+  EXPECT_EQ(first.version, 3);
   EXPECT_LT(first.bytes + 900000, first.bytes_before);
   const UpgradeReport second = upgrade_database(path_);
-  EXPECT_EQ(second.version_before, 2);
+  EXPECT_EQ(second.version_before, 3);
   const Database database(path_, OpenMode::read_only);
   EXPECT_EQ(describe_database(database), before_);
   EXPECT_EQ(database.generation(), generation_);

@@ -1,7 +1,9 @@
 #include <filesystem>
 
 #include "base/file.h"
+#include "base/random.h"
 #include "index/index_changes.h"
+#include "index/update_index.h"
 #include "tests/index/living_database.h"
 
 namespace remomask {
@@ -111,6 +113,37 @@ TEST_F(FollowTest, AnEmptyDatabaseFindsNothing) {
   EXPECT_NE(error_of([&] { index.save(path_); }).find("without clips"), std::string::npos);
 }
 
+TEST_F(FollowTest, TheLogOfChangesAndTheListOfClipsSayTheSame) {
+  auto by_log = VectorIndex::build(*database_, "retriever");
+  auto by_list = VectorIndex::build(*database_, "retriever");
+  const std::string path = database_->path();
+  CounterRandom random(7);
+  for (int round = 0; round < 30; ++round) {
+    const size_t kind = random.below(4);
+    if (kind == 0) add(1 + static_cast<int>(random.below(9)));
+    if (kind == 1) remove_every(11 + random.below(200));
+    const auto ids = database_->embedded_clips("retriever");
+    const int64_t some = ids[random.below(ids.size())];
+    if (kind == 2) {  // new captions drop the vectors; half of them are made again
+      ClipChanges changes;
+      changes.captions = {"a person does number " + std::to_string(round)};
+      database_->update_clip(some, changes);
+      if (round % 2 == 0) embed({some});
+    }
+    if (kind == 3) embed({some, ids.front()});  // the same ones again
+    if (round % 3 == 0) continue;               // several changes at once
+    const IndexDifference logged = by_log.follow(*database_);
+    run_sql(path, "UPDATE fact SET value = '1000000' WHERE key = 'changes_since'");
+    ASSERT_FALSE(database_->embedding_changes("retriever", database_->generation()));
+    const IndexDifference listed = by_list.follow(*database_);
+    run_sql(path, "UPDATE fact SET value = '0' WHERE key = 'changes_since'");
+    EXPECT_EQ(logged.added, listed.added) << round;
+    EXPECT_EQ(logged.dropped, listed.dropped) << round;
+    expect_present(by_log);
+    expect_present(by_list);
+  }
+}
+
 class DeltaTest : public LivingDatabase {
  protected:
   void SetUp() override {
@@ -210,6 +243,43 @@ TEST_F(DeltaTest, AKillBetweenBaseAndDeltaLeavesAReadablePair) {
       expect_present(opened());
     }
   }
+}
+
+TEST_F(DeltaTest, CopiesThatWereChangedApartDoNotShareAnIndex) {
+  const std::string copy_path = folder_ / "copy.sqlite";
+  run_sql(database_->path(), ("VACUUM INTO '" + copy_path + "'").c_str());
+  const std::string copy_index = default_index_path(copy_path);
+  write_file_atomically(copy_index, first_base_);
+  remove_every(50);
+  add(4);
+  follow_and_save();
+  {
+    // Here the same ids are given to other clips.
+    Database copy(copy_path, OpenMode::read_write);
+    std::vector<ClipEmbedding> embeddings;
+    for (int i = 0; i < 7; ++i) {
+      const int64_t id = add_test_clip(copy, named_clip("own" + std::to_string(i)), 4);
+      embeddings.push_back({id, vector_of(5000 + id), {}, {}});
+    }
+    copy.add_embeddings("retriever", embeddings);
+    auto index = VectorIndex::open(copy_index, copy, "retriever");  // of the common past
+    EXPECT_EQ(index.count(), 307);
+    index.save(copy_index);
+  }
+  const std::string own = read_file(delta_path(path_)), other = read_file(delta_path(copy_index));
+  write_file_atomically(delta_path(path_), other);
+  write_file_atomically(delta_path(copy_index), own);
+  const Database copy(copy_path, OpenMode::read_only);
+  const auto of_copy = [&] { return VectorIndex::open(copy_index, copy, "retriever"); };
+  EXPECT_NE(error_of([&] { of_copy(); }).find("changed apart"), std::string::npos);
+  // Whichever is further on: the one here now passes the other.
+  while (database_->generation() <= copy.generation()) add(1);
+  EXPECT_NE(error_of([&] { opened(); }).find("changed apart"), std::string::npos);
+  EXPECT_NE(update_index(path_, *database_, "retriever").rebuilt.find("changed apart"),
+            std::string::npos);
+  expect_present(opened());
+  update_index(copy_index, copy, "retriever");
+  EXPECT_EQ(of_copy().count(), 307);
 }
 
 TEST_F(DeltaTest, SavesAWholeIndexWhereItsBaseIsNot) {

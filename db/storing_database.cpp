@@ -1,0 +1,47 @@
+#include "db/storing_database.h"
+
+#include <filesystem>
+
+#include "db/sqlite.h"
+
+namespace remomask {
+
+namespace {
+
+bool is_unused(const SqliteConnection& connection) {
+  return connection.integer("SELECT CAST(value AS INTEGER) FROM fact WHERE key = 'generation'") ==
+         0;
+}
+
+/// Removes the file unless something was stored in it, or another program has it
+/// open: leaving the WAL needs to be alone with the file.
+void remove_when_unused(const std::string& path) {
+  const SqliteConnection connection(path, SqliteMode::read_write);
+  if (!is_unused(connection)) return;
+  SqliteStatement leave_wal(connection, "PRAGMA journal_mode = DELETE");
+  leave_wal.step();
+  if (leave_wal.text(0) != "delete") return;
+  leave_wal.reset();
+  connection.execute("BEGIN EXCLUSIVE");
+  if (is_unused(connection)) std::filesystem::remove(path);
+  connection.execute("COMMIT");
+}
+
+}  // namespace
+
+StoringDatabase::StoringDatabase(const std::string& path)
+    : path_(path),
+      is_new_(!std::filesystem::exists(path)),
+      database_(std::in_place, path, is_new_ ? OpenMode::create : OpenMode::read_write) {}
+
+StoringDatabase::~StoringDatabase() {
+  database_.reset();
+  if (!is_new_) return;
+  try {
+    remove_when_unused(path_);
+  } catch (const std::exception&) {
+    // Another program uses it already: it stays.
+  }
+}
+
+}  // namespace remomask

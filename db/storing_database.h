@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "db/database.h"
+
+namespace remomask {
+
+/// A database for commands that store: made when it is missing, and taken away
+/// again at the end when nothing was stored in a new one, as after an error.
+class StoringDatabase {
+ public:
+  /// Throws Error as Database().
+  explicit StoringDatabase(const std::string& path);
+  ~StoringDatabase();
+  StoringDatabase(const StoringDatabase&) = delete;
+  StoringDatabase& operator=(const StoringDatabase&) = delete;
+
+  Database& operator*() { return *database_; }
+
+ private:
+  std::string path_;
+  bool is_new_;
+  std::optional<Database> database_;
+};
+
+}  // namespace remomask
