@@ -17,6 +17,7 @@ Condition combine_conditions(const Combine& combine) {
   result.hit_text = combine(&Condition::hit_text);
   result.hit_similarity = combine(&Condition::hit_similarity);
   result.hit_mask = combine(&Condition::hit_mask);
+  result.hit_tokens = combine(&Condition::hit_tokens);
   result.use_text = combine(&Condition::use_text);
   result.use_retrieval = combine(&Condition::use_retrieval);
   return result;
@@ -31,7 +32,8 @@ Condition select_condition(const Condition& condition, const at::Tensor& index) 
 
 Condition concatenate_conditions(const Condition& first, const Condition& second) {
   TORCH_INTERNAL_ASSERT(first.text_states.size(1) == second.text_states.size(1) &&
-                        first.hit_motion.size(1) == second.hit_motion.size(1));
+                        first.hit_motion.size(1) == second.hit_motion.size(1) &&
+                        first.hit_tokens.sizes().slice(1) == second.hit_tokens.sizes().slice(1));
   return combine_conditions([&](at::Tensor Condition::*field) {
     return at::cat({first.*field, second.*field}, 0);
   });

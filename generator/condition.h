@@ -13,6 +13,8 @@ struct Condition {
   at::Tensor hit_text;        ///< [B, k, E] R_t: vectors of their captions
   at::Tensor hit_similarity;  ///< [B, k] cosine of query and hit
   at::Tensor hit_mask;        ///< [B, k] bool, false where there is no (good) hit
+  at::Tensor hit_tokens;      ///< [B, s, T_h, rows] int64: base tokens of the best s <= k hits, -1
+                              ///< where no frame is; s = 0: the hits are vectors only
   at::Tensor use_text;        ///< [B] bool; false: the learned null text token stands in
   at::Tensor use_retrieval;   ///< [B] bool; false: the learned null retrieval token stands in
 };

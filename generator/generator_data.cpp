@@ -118,6 +118,32 @@ RetrievalTable split_table(const TokenSplit& split, const at::Tensor& own_motion
   return build_retrieval_table(queries, data.motion, groups);
 }
 
+/// Base tokens of the best hits, padded to the longest.
+at::Tensor make_hit_tokens(const GeneratorData& data, const std::vector<ConditionSample>& samples,
+                           int64_t sequence_hits) {
+  const auto used = [&](const ConditionSample& sample) {
+    return std::min<size_t>(sample.hits.size(), static_cast<size_t>(sequence_hits));
+  };
+  const auto map_of = [&](const DrawnHit& hit) {
+    return data.train.clips[static_cast<size_t>(hit.motion)].tokens[0].select(2, 0);
+  };
+  int64_t longest = 0;
+  for (const auto& sample : samples) {
+    for (size_t i = 0; i < used(sample); ++i) {
+      longest = std::max(longest, map_of(sample.hits[i]).size(0));
+    }
+  }
+  const auto tokens = torch::full(
+      {static_cast<int64_t>(samples.size()), sequence_hits, longest, data.rows}, -1, torch::kLong);
+  for (size_t b = 0; b < samples.size(); ++b) {
+    for (size_t i = 0; i < used(samples[b]); ++i) {
+      const auto map = map_of(samples[b].hits[i]);
+      tokens[static_cast<int64_t>(b)][static_cast<int64_t>(i)].slice(0, 0, map.size(0)).copy_(map);
+    }
+  }
+  return tokens;
+}
+
 }  // namespace
 
 GeneratorData prepare_generator_data(const std::vector<TrainingClip>& train,
@@ -164,7 +190,7 @@ GeneratorData prepare_generator_data(const std::vector<TrainingClip>& train,
 }
 
 Condition make_condition(const GeneratorData& data, const std::vector<ConditionSample>& samples,
-                         int64_t max_hits) {
+                         int64_t max_hits, int64_t sequence_hits) {
   const auto batch = static_cast<int64_t>(samples.size());
   const CaptionFeatures& captions = data.captions;
   int64_t longest = 1;
@@ -182,6 +208,7 @@ Condition make_condition(const GeneratorData& data, const std::vector<ConditionS
   condition.hit_text = torch::zeros_like(condition.hit_motion);
   condition.hit_similarity = torch::zeros({batch, max_hits});
   condition.hit_mask = torch::zeros({batch, max_hits}, torch::kBool);
+  condition.hit_tokens = make_hit_tokens(data, samples, sequence_hits);
   condition.use_text = torch::zeros({batch}, torch::kBool);
   condition.use_retrieval = torch::zeros({batch}, torch::kBool);
   for (int64_t b = 0; b < batch; ++b) {

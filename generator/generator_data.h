@@ -57,9 +57,10 @@ struct ConditionSample {
   bool use_text = true, use_retrieval = true;
 };
 
-/// Text padded to the longest of the batch, hits to `max_hits`.
+/// Text padded to the longest of the batch, hits to `max_hits`; the tokens of
+/// the best `sequence_hits` of them.
 Condition make_condition(const GeneratorData& data, const std::vector<ConditionSample>& samples,
-                         int64_t max_hits);
+                         int64_t max_hits, int64_t sequence_hits);
 
 /// Clips of similar length in batches of at most `batch`: shuffled, sorted by
 /// length inside blocks of eight batches, batches shuffled again. A function of

@@ -2,6 +2,8 @@
 
 #include <torch/nn/module.h>
 #include <torch/nn/modules/embedding.h>
+#include <torch/nn/modules/linear.h>
+#include <torch/nn/modules/normalization.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -25,9 +27,12 @@ struct MaskedConfig {
   int64_t text_width = 256;       ///< of the text tower's token states
   int64_t embedding_width = 256;  ///< of the shared text-motion space
   int64_t max_hits = 4;           ///< most retrieved motions; 0: no retrieval path at all
+  int64_t sequence_hits = 0;      ///< the best so many are also read as token maps
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MaskedConfig, preset, rows, codes, width, heads, layers, hidden,
-                                   dropout, text_width, embedding_width, max_hits)
+// Files of before sequence_hits do not have it.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(MaskedConfig, preset, rows, codes, width, heads,
+                                                layers, hidden, dropout, text_width,
+                                                embedding_width, max_hits, sequence_hits)
 
 /// Predicts the base tokens of a map [T, rows] under a condition (ReMoMask 3.3).
 /// Codebooks are per row, hence so are token table and output head.
@@ -35,6 +40,8 @@ class MaskedTransformerImpl : public torch::nn::Module {
  public:
   explicit MaskedTransformerImpl(const MaskedConfig& config);
 
+  /// Condition::hit_tokens are of this model's tokenizer; hits beyond
+  /// sequence_hits are read as vectors only.
   std::vector<ConditionCache> prepare(const Condition& condition);
   /// tokens [B, T, rows] int64, codes or mask_token(); frame_mask [B, T] bool,
   /// true where a frame exists, or undefined when all do (values of tokens that
@@ -47,8 +54,13 @@ class MaskedTransformerImpl : public torch::nn::Module {
   const MaskedConfig& config() const { return config_; }
 
  private:
+  at::Tensor embed(const at::Tensor& tokens);
+  HitStates hit_states(const Condition& condition);
+
   MaskedConfig config_;
   torch::nn::Embedding token_table_;
+  torch::nn::Linear hit_pair_{nullptr}, hit_similarity_{nullptr};
+  torch::nn::LayerNorm hit_norm_{nullptr};
   SstaStack stack_;
   at::Tensor head_weight_, head_bias_;
 };

@@ -91,6 +91,32 @@ struct Generator::Impl {
     need_equal(upper.text_width, retriever.text_width(), "the width of the text states");
   }
 
+  /// Base tokens of the best hits [1, s, T, rows], -1 where no frame is.
+  at::Tensor hit_tokens(const std::vector<RetrievedMotion>& hits) const {
+    const auto count =
+        std::min<int64_t>(masked->config().sequence_hits, static_cast<int64_t>(hits.size()));
+    const FeatureMode mode = parse_feature_mode(tokenizer.config().feature_mode);
+    std::vector<at::Tensor> maps;
+    int64_t longest = 0;
+    for (int64_t i = 0; i < count; ++i) {
+      const auto& poses = hits[static_cast<size_t>(i)].poses;
+      at::Tensor map = torch::empty({0, tokenizer.config().rows}, torch::kLong);
+      if (poses && poses->frames >= 4) {
+        map = tokenizer.encode(extract_features_all_frames(*poses, skeleton, mode))
+                  .select(2, 0)
+                  .slice(0, 0, kLongestTokenMap);
+      }
+      longest = std::max(longest, map.size(0));
+      maps.push_back(map);
+    }
+    const auto tokens = torch::full({1, count, longest, tokenizer.config().rows}, -1, torch::kLong);
+    for (int64_t i = 0; i < count; ++i) {
+      const at::Tensor& map = maps[static_cast<size_t>(i)];
+      tokens[0][i].slice(0, 0, map.size(0)).copy_(map);
+    }
+    return tokens;
+  }
+
   Condition condition(const std::string& prompt, const std::vector<RetrievedMotion>& hits) const {
     const TextEncoding text = retriever.encode_text({prompt});
     const auto count = static_cast<int64_t>(hits.size());
@@ -108,6 +134,7 @@ struct Generator::Impl {
       result.hit_similarity.data_ptr<float>()[i] = static_cast<float>(hit.similarity);
     }
     result.hit_mask = torch::ones({1, count}, torch::kBool);
+    result.hit_tokens = hit_tokens(hits);
     result.use_text = torch::full({1}, !prompt.empty(), torch::kBool);
     result.use_retrieval = torch::full({1}, count > 0, torch::kBool);
     return result;
@@ -123,6 +150,7 @@ Generator& Generator::operator=(Generator&&) noexcept = default;
 const Retriever& Generator::retriever() const { return impl_->retriever; }
 const Tokenizer& Generator::tokenizer() const { return impl_->tokenizer; }
 int64_t Generator::max_hits() const { return impl_->masked->config().max_hits; }
+int64_t Generator::sequence_hits() const { return impl_->masked->config().sequence_hits; }
 
 int64_t token_frames(const std::optional<double>& seconds, const std::vector<RetrievedMotion>& hits,
                      double fps) {

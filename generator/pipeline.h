@@ -22,6 +22,9 @@ struct RetrievedMotion {
   std::vector<float> text;    ///< R_t
   double similarity = 0;      ///< cosine of prompt and motion
   int frames = 0;             ///< its length at the skeleton's rate; 0: unknown
+  /// Its motion, for models that read hits frame by frame (sequence_hits());
+  /// without it the hit is its vectors only.
+  std::optional<Motion> poses;
 };
 
 struct GenerateOptions {
@@ -65,6 +68,8 @@ class Generator {
   const Retriever& retriever() const;
   const Tokenizer& tokenizer() const;
   int64_t max_hits() const;
+  /// Of how many hits, the best ones, the poses are read.
+  int64_t sequence_hits() const;
 
  private:
   struct Impl;

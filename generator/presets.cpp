@@ -62,6 +62,7 @@ void momask_sizes(ModelConfig& model) {
 
 ModelConfig model_preset(const std::string& preset) {
   ModelConfig model;
+  model.masked.sequence_hits = 2;
   // The MoMask baseline has no retrieval; its text vector comes from the base retriever.
   if (preset == "tiny") {
     tiny_sizes(model);

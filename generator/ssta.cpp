@@ -17,7 +17,7 @@ namespace nn = torch::nn;
 
 namespace {
 
-constexpr int64_t kKinds = 3;
+constexpr int64_t kTextKinds = 3, kHitStateKind = 3;
 // Far below any real logit, yet finite: softmax gives exactly 0 and gradients stay finite.
 constexpr double kHiddenKey = -1e4;
 
@@ -38,7 +38,8 @@ ConditionEncoderImpl::ConditionEncoderImpl(const SstaConfig& config)
       register_parameter("null_hit_value", torch::randn({config.embedding_width}) * 0.5);
 }
 
-ConditionRows ConditionEncoderImpl::forward(const Condition& condition) {
+ConditionRows ConditionEncoderImpl::forward(const Condition& condition,
+                                            const HitStates& hit_states) {
   const int64_t batch = condition.text_states.size(0), k = condition.hit_motion.size(1);
   // Unit vectors become vectors of unit components: what the layers expect.
   const double unit_scale = std::sqrt(static_cast<double>(config_.embedding_width));
@@ -68,6 +69,11 @@ ConditionRows ConditionEncoderImpl::forward(const Condition& condition) {
     visible.push_back(hits.any(1, /*keepdim=*/true).logical_not());
     kinds.push_back(torch::full({k + 1}, 2, long_options));
   }
+  if (config_.hit_states && hit_states.states.defined()) {
+    rows.hit_states = hit_states.states;
+    visible.push_back(hit_states.visible.logical_and(condition.use_retrieval.unsqueeze(1)));
+    kinds.push_back(torch::full({hit_states.states.size(1)}, kHitStateKind, long_options));
+  }
   rows.visible = torch::cat(visible, 1);
   rows.kinds = torch::cat(kinds, 0);
   return rows;
@@ -92,17 +98,24 @@ SstaImpl::SstaImpl(const SstaConfig& config)
       position_bias_(register_module(
           "position_bias",
           nn::Embedding((2 * kLongestTokenMap - 1) * config.rows * config.rows, config.heads))),
-      kind_bias_(register_module("kind_bias", nn::Embedding(kKinds, config.heads))) {
+      kind_bias_(register_module(
+          "kind_bias", nn::Embedding(kTextKinds + (config.hit_states ? 1 : 0), config.heads))) {
+  if (config.hit_states) {
+    hit_state_key_ = register_module("hit_state_key", nn::Linear(config.width, config.width));
+    hit_state_value_ = register_module("hit_state_value", nn::Linear(config.width, config.width));
+  }
   if (!config.retrieval) return;
   hit_key_ = register_module("hit_key", nn::Linear(2 * config.embedding_width + 1, config.width));
   hit_value_ = register_module("hit_value", nn::Linear(config.embedding_width, config.width));
 }
 
 void SstaImpl::reset_retrieval_values() {
-  if (!config_.retrieval) return;
   at::NoGradGuard no_grad;
-  hit_value_->weight.zero_();
-  hit_value_->bias.zero_();
+  for (nn::Linear* values : {&hit_value_, &hit_state_value_}) {
+    if (values->is_empty()) continue;
+    (*values)->weight.zero_();
+    (*values)->bias.zero_();
+  }
 }
 
 ConditionCache SstaImpl::prepare(const ConditionRows& rows) {
@@ -111,6 +124,10 @@ ConditionCache SstaImpl::prepare(const ConditionRows& rows) {
   if (config_.retrieval) {
     cache.keys = torch::cat({cache.keys, hit_key_(rows.hit_keys)}, 1);
     cache.values = torch::cat({cache.values, hit_value_(rows.hit_values)}, 1);
+  }
+  if (rows.hit_states.defined()) {
+    cache.keys = torch::cat({cache.keys, hit_state_key_(rows.hit_states)}, 1);
+    cache.values = torch::cat({cache.values, hit_state_value_(rows.hit_states)}, 1);
   }
   const auto scalars = kind_bias_(rows.kinds).t().unsqueeze(0);  // [1, H, C]
   cache.bias = torch::where(rows.visible.unsqueeze(1), scalars,
@@ -171,8 +188,9 @@ void SstaStackImpl::initialise() {
   for (auto& block : blocks_) block->attention()->reset_retrieval_values();
 }
 
-std::vector<ConditionCache> SstaStackImpl::prepare(const Condition& condition) {
-  const ConditionRows rows = condition_encoder_(condition);
+std::vector<ConditionCache> SstaStackImpl::prepare(const Condition& condition,
+                                                   const HitStates& hit_states) {
+  const ConditionRows rows = condition_encoder_(condition, hit_states);
   std::vector<ConditionCache> caches;
   for (auto& block : blocks_) caches.push_back(block->prepare(rows));
   return caches;

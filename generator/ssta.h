@@ -19,20 +19,29 @@ struct SstaConfig {
   int64_t text_width = 256;       ///< of Condition::text_states
   int64_t embedding_width = 256;  ///< E
   bool retrieval = true;          ///< false: STA, no retrieval rows at all (residual model, MoMask)
+  bool hit_states = false;        ///< retrieved motions are also read frame by frame (HitStates)
+};
+
+/// Retrieved motions as sequences: N states of all hits of a sample.
+struct HitStates {
+  at::Tensor states;   ///< [B, N, D]; undefined: none
+  at::Tensor visible;  ///< [B, N] bool; does not say whether retrieval is used
 };
 
 /// Longest token map in frames of four poses; relative distances are clipped to
 /// +-(kLongestTokenMap - 1).
 constexpr int64_t kLongestTokenMap = 49;
 
-/// Condition rows before the projections of a layer, C = (S + 1) + (k + 1):
-/// token states, the pooled text vector (or the null text), hits, the null hit.
+/// Condition rows before the projections of a layer, C = (S + 1) + (k + 1) + N:
+/// token states, the pooled text vector (or the null text), hits, the null hit,
+/// states of the hits.
 struct ConditionRows {
   at::Tensor text;        ///< [B, S+1, D]
   at::Tensor hit_keys;    ///< [B, k+1, 2E+1]: R_m, R_t, similarity; undefined for STA
   at::Tensor hit_values;  ///< [B, k+1, E]: R_m; undefined for STA
+  at::Tensor hit_states;  ///< [B, N, D]: R_m in time and parts; undefined where there are none
   at::Tensor visible;     ///< [B, C] bool
-  at::Tensor kinds;       ///< [C] int64: 0 token state, 1 pooled text, 2 retrieval
+  at::Tensor kinds;       ///< [C] int64: 0 token state, 1 pooled text, 2 hit, 3 state of a hit
 };
 
 /// Brings text and hits to rows. The learned null text stands in for the text
@@ -41,7 +50,7 @@ struct ConditionRows {
 class ConditionEncoderImpl : public torch::nn::Module {
  public:
   explicit ConditionEncoderImpl(const SstaConfig& config);
-  ConditionRows forward(const Condition& condition);
+  ConditionRows forward(const Condition& condition, const HitStates& hit_states);
 
  private:
   SstaConfig config_;
@@ -65,10 +74,11 @@ struct ConditionCache {
 at::Tensor relative_position_index(int64_t frames, int64_t rows);
 
 /// Semantic Spatio-Temporal Attention (ReMoMask eq. 8-11, made precise):
-/// Q = W_q z; K = [W z; W t; W [R_m, R_t, s]]; V = [W z; W t; W R_m];
+/// Q = W_q z; K = [W z; W t; W [R_m, R_t, s]; W h]; V = [W z; W t; W R_m; W h],
+/// h the states of the hits;
 /// W_o softmax(Q K^T / sqrt(d_h) + b) V with b a learned bias per head over
 /// (dt, row, row') for token keys and one scalar per head for each kind of
-/// condition row. The value projection of the retrieval rows starts at zero:
+/// condition row. The value projections of the retrieval rows start at zero:
 /// the model starts as a text-only one.
 class SstaImpl : public torch::nn::Module {
  public:
@@ -86,6 +96,7 @@ class SstaImpl : public torch::nn::Module {
   SstaConfig config_;
   torch::nn::Linear query_key_value_, text_key_value_, output_;
   torch::nn::Linear hit_key_{nullptr}, hit_value_{nullptr};
+  torch::nn::Linear hit_state_key_{nullptr}, hit_state_value_{nullptr};
   torch::nn::Embedding position_bias_, kind_bias_;
 };
 TORCH_MODULE(Ssta);
@@ -114,7 +125,7 @@ class SstaStackImpl : public torch::nn::Module {
   SstaStackImpl(const SstaConfig& config, int64_t layers);
 
   /// Everything that depends on the condition only, one entry a layer.
-  std::vector<ConditionCache> prepare(const Condition& condition);
+  std::vector<ConditionCache> prepare(const Condition& condition, const HitStates& hit_states = {});
   /// x [B, n, D], time-major (token t * rows + row), without positions: the 2D
   /// sinusoid is added here. frame_mask [B, n / rows] or undefined.
   /// `after_block`, when given, receives the residual stream after each block.

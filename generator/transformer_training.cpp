@@ -105,7 +105,7 @@ TransformerBatch masked_batch(const GeneratorData& data, const std::vector<size_
     mask_sample(maps[b].size(0), data, randoms[b], batch.tokens.data_ptr<int64_t>() + first,
                 batch.targets.data_ptr<int64_t>() + first);
   }
-  batch.condition = make_condition(data, samples, config.max_hits);
+  batch.condition = make_condition(data, samples, config.max_hits, config.sequence_hits);
   return batch;
 }
 
@@ -144,7 +144,7 @@ TransformerBatch residual_batch(const GeneratorData& data, const std::vector<siz
       }
     }
   }
-  batch.condition = make_condition(data, samples, 0);
+  batch.condition = make_condition(data, samples, 0, 0);
   return batch;
 }
 
@@ -203,7 +203,8 @@ std::map<std::string, double> validate_masked(MaskedTransformer& model, const Ge
                   targets.data_ptr<int64_t>() + first);
     }
     ++number;
-    Condition condition = make_condition(data, samples, model->config().max_hits);
+    Condition condition =
+        make_condition(data, samples, model->config().max_hits, model->config().sequence_hits);
     both.add(
         token_loss(model->forward(tokens, model->prepare(condition), padded.frame_mask), targets));
     condition.use_retrieval = torch::zeros_like(condition.use_retrieval);
@@ -231,7 +232,7 @@ std::map<std::string, double> validate_residual(ResidualTransformer& model,
     }
     const PaddedTokens padded = pad_tokens(maps);
     const auto level = torch::tensor(levels, torch::kLong);
-    const Condition condition = make_condition(data, samples, 0);
+    const Condition condition = make_condition(data, samples, 0, 0);
     mean.add(token_loss(
         model->forward(padded.tokens, level, model->prepare(condition), padded.frame_mask),
         residual_targets(padded.tokens, level, padded.frame_mask)));

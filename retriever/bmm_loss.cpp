@@ -2,29 +2,33 @@
 
 #include <torch/nn/functional/loss.h>
 
+#include <cmath>
 #include <limits>
 
 namespace remomask {
 
-at::Tensor same_pairs(const PairIdentity& queries, const PairIdentity& keys) {
-  return queries.group.unsqueeze(1)
-      .eq(keys.group.unsqueeze(0))
-      .logical_or(queries.caption.unsqueeze(1).eq(keys.caption.unsqueeze(0)))
-      .logical_or(queries.meaning.unsqueeze(1).eq(keys.meaning.unsqueeze(0)));
+at::Tensor negative_bias(const PairIdentity& queries, const PairIdentity& keys,
+                         double same_meaning_weight) {
+  const auto equal = [](const at::Tensor& a, const at::Tensor& b) {
+    return a.unsqueeze(1).eq(b.unsqueeze(0));
+  };
+  const at::Tensor same =
+      equal(queries.group, keys.group).logical_or(equal(queries.caption, keys.caption));
+  // log(0) is the -infinity that a weight of 0 means.
+  return torch::zeros(same.sizes())
+      .masked_fill(equal(queries.meaning, keys.meaning), std::log(same_meaning_weight))
+      .masked_fill(same, -std::numeric_limits<float>::infinity());
 }
 
 at::Tensor contrast_loss(const at::Tensor& queries, const at::Tensor& keys, const at::Tensor& queue,
-                         const at::Tensor& ignore_batch, const at::Tensor& ignore_queue,
+                         const at::Tensor& batch_bias, const at::Tensor& queue_bias,
                          const at::Tensor& scale) {
-  constexpr float kNever = -std::numeric_limits<float>::infinity();
   const int64_t count = queries.size(0);
-  const auto own = torch::eye(count, ignore_batch.options());
-  // Scaled before the infinities come in: 0 x infinity would be the gradient of the scale.
-  at::Tensor logits = (torch::matmul(queries, keys.t()) * scale)
-                          .masked_fill(ignore_batch.logical_and(own.logical_not()), kNever);
+  const auto own = torch::eye(count, batch_bias.options().dtype(torch::kBool));
+  // Infinities are added, not multiplied: 0 x infinity would be the gradient of the scale.
+  at::Tensor logits = torch::matmul(queries, keys.t()) * scale + batch_bias.masked_fill(own, 0);
   if (queue.defined()) {
-    logits = torch::cat(
-        {logits, (torch::matmul(queries, queue.t()) * scale).masked_fill(ignore_queue, kNever)}, 1);
+    logits = torch::cat({logits, torch::matmul(queries, queue.t()) * scale + queue_bias}, 1);
   }
   return torch::cross_entropy_loss(logits, torch::arange(count, torch::kLong));
 }

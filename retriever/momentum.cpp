@@ -64,9 +64,10 @@ void update_twin(torch::nn::Module& twin, torch::nn::Module& online, double mome
 }
 
 BmmModel::BmmModel(const RetrieverConfig& config, Queues queues, int64_t queue_size,
-                   double momentum, double temperature)
+                   double momentum, double temperature, double same_meaning_weight)
     : queues_(queues),
       momentum_(momentum),
+      same_meaning_weight_(same_meaning_weight),
       online_(register_module("online", std::make_shared<RetrieverModel>(config))),
       twin_(register_module("twin", std::make_shared<RetrieverModel>(config))),
       text_queue_(
@@ -94,14 +95,14 @@ std::pair<at::Tensor, at::Tensor> BmmModel::keys(const PairBatch& batch) {
 }
 
 at::Tensor BmmModel::part_loss(const at::Tensor& motion, const at::Tensor& text, const Keys& keys,
-                               const at::Tensor& ignore) const {
+                               const at::Tensor& bias) const {
   const at::Tensor factor = scale();
   at::Tensor sum = torch::zeros({});
   for (int64_t part = 0; part < kBodyParts; ++part) {
     sum = sum +
-          contrast_loss(motion.select(1, part), keys.text_parts.select(1, part), {}, ignore, {},
+          contrast_loss(motion.select(1, part), keys.text_parts.select(1, part), {}, bias, {},
                         factor) +
-          contrast_loss(text.select(1, part), keys.motion_parts.select(1, part), {}, ignore, {},
+          contrast_loss(text.select(1, part), keys.motion_parts.select(1, part), {}, bias, {},
                         factor);
   }
   return sum / (2 * kBodyParts);
@@ -116,14 +117,15 @@ BmmLosses BmmModel::loss(const PairBatch& batch, double part_weight, double toke
   const MotionVectors motion = online_->motion_encoder().forward(batch.online_patches);
 
   const at::Tensor factor = scale();
-  const at::Tensor ignore = same_pairs(batch.identity, batch.identity);
+  const at::Tensor bias = negative_bias(batch.identity, batch.identity, same_meaning_weight_);
   const auto direction = [&](const at::Tensor& queries, const at::Tensor& keys,
                              const KeyQueue& queue, bool used) {
     if (!used || queue.filled() == 0) {
-      return contrast_loss(queries, keys, {}, ignore, {}, factor);
+      return contrast_loss(queries, keys, {}, bias, {}, factor);
     }
-    return contrast_loss(queries, keys, queue.keys(), ignore,
-                         same_pairs(batch.identity, queue.identity()), factor);
+    return contrast_loss(queries, keys, queue.keys(), bias,
+                         negative_bias(batch.identity, queue.identity(), same_meaning_weight_),
+                         factor);
   };
   const bool use_text = queues_ == Queues::text || queues_ == Queues::both;
   const bool use_motion = queues_ == Queues::motion || queues_ == Queues::both;
@@ -132,7 +134,7 @@ BmmLosses BmmModel::loss(const PairBatch& batch, double part_weight, double toke
 
   BmmLosses losses{(m2t + t2m) / 2, m2t.item<double>(), t2m.item<double>(), 0};
   if (part_weight > 0) {
-    const at::Tensor parts = part_loss(motion.parts, text.parts, kept_, ignore);
+    const at::Tensor parts = part_loss(motion.parts, text.parts, kept_, bias);
     losses.parts = parts.item<double>();
     losses.total = losses.total + part_weight * parts;
   }

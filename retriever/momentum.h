@@ -49,7 +49,7 @@ struct BmmLosses {
 class BmmModel final : public torch::nn::Module {
  public:
   BmmModel(const RetrieverConfig& config, Queues queues, int64_t queue_size, double momentum,
-           double temperature);
+           double temperature, double same_meaning_weight);
 
   /// Loss of a batch, ( CE(q^m, [k^t | text queue]) + CE(q^t, [k^m | motion
   /// queue]) ) / 2 + part_weight x the same for the parts (HBM, batch keys
@@ -75,10 +75,10 @@ class BmmModel final : public torch::nn::Module {
   };
   Keys make_keys(const PairBatch& batch);
   at::Tensor part_loss(const at::Tensor& motion, const at::Tensor& text, const Keys& keys,
-                       const at::Tensor& ignore) const;
+                       const at::Tensor& bias) const;
 
   Queues queues_;
-  double momentum_;
+  double momentum_, same_meaning_weight_;
   std::shared_ptr<RetrieverModel> online_, twin_;
   std::shared_ptr<KeyQueue> text_queue_, motion_queue_;
   at::Tensor log_scale_;

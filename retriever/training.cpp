@@ -26,10 +26,10 @@ int64_t text_identity(const std::string& text) {
   return static_cast<int64_t>(std::stoull(content_hash(text).substr(0, 16), nullptr, 16));
 }
 
-/// Of what the labels say, or of the group where they are silent or not used.
-int64_t meaning_identity(const TrainingClip& clip, bool use_labels) {
-  return use_labels && !clip.meaning.empty() ? text_identity("meaning " + clip.meaning)
-                                             : text_identity("group " + std::to_string(clip.group));
+/// Of what the labels say, or of the group where they are silent.
+int64_t meaning_identity(const TrainingClip& clip) {
+  return text_identity(clip.meaning.empty() ? "group " + std::to_string(clip.group)
+                                            : "meaning " + clip.meaning);
 }
 
 /// What tells one training set from another, for the checkpoint.
@@ -85,7 +85,7 @@ class BatchSource {
       whole.push_back({&clip.features, online.back().first, online.back().frames, {}});
       groups.push_back(clip.group);
       texts.push_back(text_identity(normalise_caption(captions.back())));
-      meanings.push_back(meaning_identity(clip, options_.mask_same_meaning));
+      meanings.push_back(meaning_identity(clip));
     }
     MotionEncoder& encoder = model.motion_encoder();
     return {model.text_tower().tokenize(captions),
@@ -196,7 +196,8 @@ ModelStage train_retriever(const std::vector<TrainingClip>& train,
   config.text_tower.erase("history");
 
   torch::manual_seed(options.trainer.seed);
-  BmmModel model(config, options.queues, options.queue_size, options.momentum, options.temperature);
+  BmmModel model(config, options.queues, options.queue_size, options.momentum, options.temperature,
+                 options.same_meaning_weight);
   if (text_stage) {
     load_module_tensors(model.online().text_tower(), text_stage->tensors, "text stage");
   }
@@ -216,7 +217,7 @@ ModelStage train_retriever(const std::vector<TrainingClip>& train,
                                    {"least_crop", options.least_crop},
                                    {"patch_keep", options.patch_keep},
                                    {"word_drop", options.word_drop},
-                                   {"mask_same_meaning", options.mask_same_meaning},
+                                   {"same_meaning_weight", options.same_meaning_weight},
                                    {"text", text_stage ? stage_hash(*text_stage) : ""}};
   Trainer trainer(model, options.trainer, identity);
   if (!val_clips.empty()) {

@@ -22,9 +22,10 @@ struct RetrieverTrainingOptions {
   double least_crop = 0.7;    ///< shortest random crop, share of the clip
   double patch_keep = 0.5;    ///< share of the patches that the online encoder sees
   double word_drop = 0.1;     ///< share of the words hidden from the online text tower
-  /// Clips whose labels say the same content in the same style are no negatives
-  /// of each other (neither group nor caption gives such repetitions away).
-  bool mask_same_meaning = true;
+  /// What a clip weighs as a negative of another one whose labels say the same
+  /// content in the same style (neither group nor caption gives such repetitions
+  /// away); 0: nothing, 1: as much as any other clip.
+  double same_meaning_weight = 1;
   int64_t validation_every = 200;
   /// Defaults of a preset: sizes of queue and run that fit it.
   explicit RetrieverTrainingOptions(const std::string& preset = "base");

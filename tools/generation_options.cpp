@@ -69,8 +69,12 @@ EvidencedMotion GenerationWorkspace::generate(const std::string& prompt, uint64_
     for (const SearchHit& hit : result.hits) {
       const auto vectors = search_.database().embedding(search_.retriever().hash(), hit.clip.id);
       if (!vectors || vectors->text.empty()) continue;
-      retrieved.push_back(
-          {hit.clip.id, vectors->motion, vectors->text, hit.similarity, hit.clip.frames});
+      RetrievedMotion motion{hit.clip.id,    vectors->motion, vectors->text,
+                             hit.similarity, hit.clip.frames, {}};
+      if (static_cast<int64_t>(retrieved.size()) < generator_.sequence_hits()) {
+        motion.poses = search_.database().motion(hit.clip.id);
+      }
+      retrieved.push_back(std::move(motion));
     }
   }
   result.generated = generator_.generate(prompt, retrieved, options);

@@ -2,7 +2,7 @@
 # What the momentum queues bring: trains the tiny retriever without queues, with
 # the motion queue alone and with both, three seeds each at equal budget, and
 # prints a Markdown table of the test split. Stopped runs go on where they were.
-# More arguments go to the training, for example --no-mask-same-labels.
+# More arguments go to the training, for example --same-label-weight 0.
 #   tools/queue_ablation.sh motions.sqlite FOLDER [OPTION...]
 set -eu
 [ $# -ge 2 ] || { echo "usage: $0 DATABASE FOLDER [OPTION...]" >&2; exit 2; }

@@ -23,7 +23,7 @@ struct TrainOptions {
   std::optional<int64_t> steps, batch, queue_size;
   std::optional<double> learning_rate;
   uint64_t seed = 1;
-  bool mask_same_labels = true;
+  std::optional<double> same_label_weight;
 };
 
 /// Captions of JSON Lines files ({"captions": [...], "split": ...}); those of a
@@ -138,7 +138,7 @@ class TrainingRun {
     if (options_.batch) options.batch = *options_.batch;
     options.queues = parse_queues(options_.queues);
     if (options_.queue_size) options.queue_size = *options_.queue_size;
-    options.mask_same_meaning = options_.mask_same_labels;
+    if (options_.same_label_weight) options.same_meaning_weight = *options_.same_label_weight;
     return train_retriever(clips("train"), clips("val"), text, preset_.retriever, options,
                            monitor_);
   }
@@ -219,8 +219,11 @@ void register_train(CLI::App& app, Program& program) {
                    "entries of each queue; default: of the "
                    "preset")
       ->check(CLI::PositiveNumber);
-  command->add_flag("!--no-mask-same-labels", options->mask_same_labels,
-                    "retriever: clips with equal labels content and style are negatives too");
+  command
+      ->add_option("--same-label-weight", options->same_label_weight,
+                   "retriever: weight of clips with equal labels content and style as negatives of "
+                   "each other; default: of the preset")
+      ->check(CLI::Range(0.0, 1.0));
   command->callback([options, &program] { TrainingRun(*options, program).run(); });
 }
 

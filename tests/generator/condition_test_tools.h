@@ -8,7 +8,8 @@
 
 namespace remomask {
 
-/// Random condition of B samples with S text tokens and k hits, all present.
+/// Random condition of B samples with S text tokens and k hits, all present,
+/// which are vectors only.
 inline Condition random_condition(int64_t batch, int64_t text_tokens, int64_t hits,
                                   int64_t text_width, int64_t embedding_width) {
   const auto unit = [](const at::Tensor& x) { return x / x.norm(2, -1, true).clamp_min(1e-9); };
@@ -20,8 +21,17 @@ inline Condition random_condition(int64_t batch, int64_t text_tokens, int64_t hi
   condition.hit_text = unit(torch::randn({batch, hits, embedding_width}));
   condition.hit_similarity = torch::rand({batch, hits});
   condition.hit_mask = torch::ones({batch, hits}, torch::kBool);
+  condition.hit_tokens = torch::zeros({batch, 0, 0, 1}, torch::kLong);
   condition.use_text = torch::ones({batch}, torch::kBool);
   condition.use_retrieval = torch::ones({batch}, torch::kBool);
+  return condition;
+}
+
+/// The same with token maps [frames, rows] of random codes for the best `hits`.
+inline Condition with_hit_tokens(Condition condition, int64_t hits, int64_t frames, int64_t rows,
+                                 int64_t codes) {
+  condition.hit_tokens =
+      torch::randint(codes, {condition.text_mask.size(0), hits, frames, rows}, torch::kLong);
   return condition;
 }
 
@@ -46,6 +56,7 @@ inline MaskedConfig small_masked_config() {
   config.text_width = 12;
   config.embedding_width = 8;
   config.max_hits = 2;
+  config.sequence_hits = 1;
   return config;
 }
 

@@ -156,13 +156,18 @@ TEST(GeneratorData, BucketsHoldEveryClipOnceAndSimilarLengths) {
 TEST(GeneratorData, ConditionsArePaddedAndMarked) {
   const GeneratorData data = toy_data(10, 0);
   const Condition condition =
-      make_condition(data, {{1, {{4, 0.5f}}, true, true}, {2, {}, false, true}}, 2);
+      make_condition(data, {{1, {{4, 0.5f}}, true, true}, {2, {}, false, true}}, 2, 2);
   EXPECT_EQ(condition.text_states.sizes(), (std::vector<int64_t>{2, 3, 12}));
   EXPECT_TRUE(torch::equal(condition.text_states[0], data.captions.states.slice(0, 2, 5)));
   EXPECT_TRUE(torch::equal(condition.text_mask.sum(1), torch::tensor({3, 1}, torch::kLong)));
   EXPECT_TRUE(torch::equal(condition.hit_motion[0][0], data.motion[4]));
   EXPECT_TRUE(torch::equal(condition.hit_text[0][0], data.motion_text[4]));
   EXPECT_EQ(condition.hit_similarity[0][0].item<float>(), 0.5f);
+  const auto map = data.train.clips[4].tokens[0].select(2, 0);
+  EXPECT_EQ(condition.hit_tokens.sizes(), (std::vector<int64_t>{2, 2, map.size(0), data.rows}));
+  EXPECT_TRUE(torch::equal(condition.hit_tokens[0][0], map));
+  EXPECT_TRUE(condition.hit_tokens[0][1].eq(-1).all().item<bool>());
+  EXPECT_TRUE(condition.hit_tokens[1].eq(-1).all().item<bool>());
   EXPECT_TRUE(torch::equal(condition.hit_mask.sum(1), torch::tensor({1, 0}, torch::kLong)));
   EXPECT_TRUE(
       torch::equal(condition.use_text, torch::tensor({1, 0}, torch::kLong).to(torch::kBool)));

@@ -4,6 +4,7 @@
 #include <torch/utils.h>
 
 #include <cmath>
+#include <limits>
 
 namespace remomask {
 namespace {
@@ -12,9 +13,9 @@ at::Tensor matrix(std::vector<float> values, int64_t columns) {
   return torch::tensor(values).view({-1, columns});
 }
 
-at::Tensor nothing(int64_t rows, int64_t columns) {
-  return torch::zeros({rows, columns}, torch::kBool);
-}
+at::Tensor nothing(int64_t rows, int64_t columns) { return torch::zeros({rows, columns}); }
+
+constexpr float kNever = -std::numeric_limits<float>::infinity();
 
 // Queries (1,0), (0,1); keys (1,0), (0.6,0.8); scale 2.
 // Logits: row 0: 2, 1.2; row 1: 0, 1.6.
@@ -39,9 +40,9 @@ TEST(ContrastLoss, QueueAddsNegativesByHand) {
 
 TEST(ContrastLoss, MaskedNegativesDoNotCountAndTheTargetAlwaysDoes) {
   at::Tensor batch = nothing(2, 2), queue = nothing(2, 1);
-  batch[0][0] = true;  // the diagonal is not read
-  batch[1][0] = true;  // row 1 loses its batch negative
-  queue[1][0] = true;  // and its queue entry: nothing is left, loss 0
+  batch[0][0] = kNever;  // the diagonal is not read
+  batch[1][0] = kNever;  // row 1 loses its batch negative
+  queue[1][0] = kNever;  // and its queue entry: nothing is left, loss 0
   const double row0 = -2 + std::log(std::exp(2) + std::exp(1.2) + std::exp(0));
   const auto loss = contrast_loss(matrix(kTwoQueries, 2), matrix(kTwoKeys, 2), matrix({0, 1}, 2),
                                   batch, queue, torch::tensor(2.f));
@@ -53,11 +54,11 @@ TEST(ContrastLoss, GradientAgreesWithDifferences) {
   const auto options = torch::TensorOptions(torch::kDouble);
   at::Tensor queries = torch::randn({3, 4}, options), scale = torch::tensor(1.7, options);
   const at::Tensor keys = torch::randn({3, 4}, options), queue = torch::randn({5, 4}, options);
-  at::Tensor batch_mask = nothing(3, 3), queue_mask = nothing(3, 5);
-  batch_mask[0][2] = true;
-  queue_mask[1][4] = true;
+  at::Tensor batch_bias = nothing(3, 3), queue_bias = nothing(3, 5);
+  batch_bias[0][2] = kNever;
+  queue_bias[1][4] = kNever;
   const auto value = [&] {
-    return contrast_loss(queries, keys, queue, batch_mask, queue_mask, scale);
+    return contrast_loss(queries, keys, queue, batch_bias, queue_bias, scale);
   };
   queries.requires_grad_(true);
   scale.requires_grad_(true);
@@ -80,14 +81,27 @@ TEST(ContrastLoss, GradientAgreesWithDifferences) {
   check(scale, scale.grad());
 }
 
-TEST(SamePairs, GroupOrCaptionOrMeaning) {
+TEST(ContrastLoss, WeakNegativesWeighByHand) {
+  at::Tensor batch = nothing(2, 2), queue = nothing(2, 1);
+  batch[0][1] = std::log(0.25f);
+  queue[1][0] = std::log(0.5f);
+  const double row0 = -2 + std::log(std::exp(2) + 0.25 * std::exp(1.2) + std::exp(0));
+  const double row1 = -1.6 + std::log(std::exp(0) + std::exp(1.6) + 0.5 * std::exp(2));
+  const auto loss = contrast_loss(matrix(kTwoQueries, 2), matrix(kTwoKeys, 2), matrix({0, 1}, 2),
+                                  batch, queue, torch::tensor(2.f));
+  EXPECT_NEAR(loss.item<double>(), (row0 + row1) / 2, 1e-6);
+}
+
+TEST(NegativeBias, GroupAndCaptionCountNeverMeaningByItsWeight) {
   const PairIdentity queries{torch::tensor({1L, 2L}), torch::tensor({10L, 20L}),
                              torch::tensor({100L, 200L})};
   const PairIdentity keys{torch::tensor({1L, 3L, 4L}), torch::tensor({30L, 20L, 40L}),
                           torch::tensor({300L, 300L, 100L})};
-  const auto same = same_pairs(queries, keys);
-  EXPECT_TRUE(
-      same.equal(torch::tensor({1, 0, 1, 0, 1, 0}, torch::kInt).view({2, 3}).to(torch::kBool)));
+  const float weak = std::log(0.1f);
+  EXPECT_TRUE(torch::allclose(negative_bias(queries, keys, 0.1),
+                              matrix({kNever, 0, weak, 0, kNever, 0}, 3)));
+  EXPECT_TRUE(negative_bias(queries, keys, 0).equal(matrix({kNever, 0, kNever, 0, kNever, 0}, 3)));
+  EXPECT_TRUE(negative_bias(queries, keys, 1).equal(matrix({kNever, 0, 0, 0, kNever, 0}, 3)));
 }
 
 }  // namespace

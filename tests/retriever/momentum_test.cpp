@@ -63,7 +63,7 @@ TEST(Bmm, KeysHaveNoDropoutNoGradientAndMoveAfterTheStep) {
   torch::manual_seed(1);
   RetrieverConfig config = tiny_retriever_config();
   config.dropout = 0.5;
-  BmmModel model(config, Queues::both, 8, 0.5, 0.07);
+  BmmModel model(config, Queues::both, 8, 0.5, 0.07, 1);
   model.train();
   const auto clips = separable_clips(3, 1, 1);
   const PairBatch batch = batch_of(clips, model.online());
@@ -95,19 +95,19 @@ TEST(Bmm, LossIsTheMeanOfBothDirectionsWithEachItsQueue) {
   const std::vector<TrainingClip> older(clips.begin(), clips.begin() + 3),
       newer(clips.begin() + 2, clips.end());
   for (const Queues queues : {Queues::none, Queues::motion, Queues::text, Queues::both}) {
-    BmmModel model(tiny_retriever_config(), queues, 8, 1.0, 0.1);
+    BmmModel model(tiny_retriever_config(), queues, 8, 1.0, 0.1, 1);
     model.eval();
     model.loss(batch_of(older, model.online()), 0, 0);
     model.after_step();
     const PairBatch batch = batch_of(newer, model.online());
     const auto [text, motion] = model.keys(batch);  // twin and online are equal still
-    const auto ignore = same_pairs(batch.identity, batch.identity);
+    const auto bias = negative_bias(batch.identity, batch.identity, 1);
     const auto expected = [&](const at::Tensor& queries, const at::Tensor& keys,
                               const KeyQueue& queue, bool used) {
-      if (!used) return contrast_loss(queries, keys, {}, ignore, {}, model.scale());
-      const auto stale = same_pairs(batch.identity, queue.identity());
-      EXPECT_EQ(stale.sum().item<int64_t>(), 1);  // clip 2 meets itself
-      return contrast_loss(queries, keys, queue.keys(), ignore, stale, model.scale());
+      if (!used) return contrast_loss(queries, keys, {}, bias, {}, model.scale());
+      const auto stale = negative_bias(batch.identity, queue.identity(), 1);
+      EXPECT_EQ(stale.isinf().sum().item<int64_t>(), 1);  // clip 2 meets itself
+      return contrast_loss(queries, keys, queue.keys(), bias, stale, model.scale());
     };
     const bool with_text = queues == Queues::text || queues == Queues::both;
     const bool with_motion = queues == Queues::motion || queues == Queues::both;

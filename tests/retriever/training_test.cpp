@@ -74,12 +74,12 @@ TEST(RetrieverTraining, ResumedRunEqualsTheUninterrupted) {
   std::filesystem::remove(path);
 }
 
-TEST(RetrieverTraining, ClipsOfOneMeaningAreNoNegativesWhereAskedFor) {
+TEST(RetrieverTraining, ClipsOfOneMeaningWeighAsAskedFor) {
   auto clips = separable_clips(12, 1, 1);
   RetrieverTrainingOptions options = quick_options(3);
   options.trainer.weight_decay = 0;
-  const auto trained = [&](bool mask, double rate) {
-    options.mask_same_meaning = mask;
+  const auto trained = [&](double weight, double rate) {
+    options.same_meaning_weight = weight;
     options.trainer.learning_rate = rate;
     return train_retriever(clips, {}, {}, retriever_preset("tiny"), options, {}).tensors;
   };
@@ -88,13 +88,13 @@ TEST(RetrieverTraining, ClipsOfOneMeaningAreNoNegativesWhereAskedFor) {
                        [&](const auto& item) { return item.second.equal(b.at(item.first)); });
   };
   // Without labels the choice changes nothing.
-  const auto plain = trained(false, 2e-3);
-  EXPECT_TRUE(equal(plain, trained(true, 2e-3)));
+  const auto plain = trained(1, 2e-3);
+  EXPECT_TRUE(equal(plain, trained(0, 2e-3)));
   for (TrainingClip& clip : clips) clip.meaning = "walk/proud";
-  EXPECT_TRUE(equal(plain, trained(false, 2e-3)));
+  EXPECT_TRUE(equal(plain, trained(1, 2e-3)));
   // No negative is left, in the batch or in the queues: the loss is zero and nothing moves.
-  EXPECT_TRUE(equal(trained(true, 2e-3), trained(true, 0)));
-  EXPECT_FALSE(equal(plain, trained(true, 0)));
+  EXPECT_TRUE(equal(trained(0, 2e-3), trained(0, 0)));
+  EXPECT_FALSE(equal(plain, trained(0, 0)));
 }
 
 TEST(RetrieverTraining, LearnsSeparableMotionsAndSurvivesTheFile) {
