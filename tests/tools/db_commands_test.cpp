@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "tests/tools/program_runner.h"
 
@@ -40,6 +41,25 @@ TEST(DbUsage, EveryCommandHasHelpWithAnExample) {
         << own.output;
   }
   EXPECT_EQ(run_program({"db"}).exit_code, 2);
+}
+
+TEST_F(DbCommandsTest, BrokenFilesLeaveNoDatabaseBehind) {
+  const std::string broken = scratch_.path("walk.bvh"), fresh = scratch_.path("new.sqlite");
+  std::ofstream(broken) << "HIERARCHY\nROOT";
+  const std::string folder = scratch_.path("broken");
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy_file(broken, folder + "/walk.bvh");
+  EXPECT_EQ(run_program({"db", "add", fresh, broken}).exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(fresh));
+  EXPECT_EQ(run_program({"import", scratch_.path("nowhere"), "--db", fresh}).exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(fresh));
+  EXPECT_EQ(run_json({"import", folder, "--db", fresh})["rejected"].size(), 1u);
+  for (const char* ending : {"", "-wal", "-shm", "-journal"}) {
+    EXPECT_FALSE(std::filesystem::exists(fresh + ending)) << ending;
+  }
+  // A database that was there stays.
+  EXPECT_EQ(run_program({"db", "add", database_, broken}).exit_code, 1);
+  EXPECT_EQ(count({}), 12u);
 }
 
 TEST_F(DbCommandsTest, TagsAndFiltersChooseClips) {
@@ -124,7 +144,7 @@ TEST_F(DbCommandsTest, SnapshotRestoreUpgrade) {
   EXPECT_EQ(count({}), 11u);
   run_json({"db", "restore", copy, database_, "--force"});
   EXPECT_EQ(count({}), 12u);
-  EXPECT_EQ(run_json({"db", "upgrade", database_})["version"], 2);
+  EXPECT_EQ(run_json({"db", "upgrade", database_})["version"], 3);
 }
 
 }  // namespace
