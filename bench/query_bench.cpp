@@ -12,10 +12,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <memory>
 #include <string>
 
 #include "bench/machine_peak.h"
-#include "index/search.h"
+#include "index/hit_list.h"
 #include "nn/model_file.h"
 #include "retriever/retriever.h"
 
@@ -32,12 +33,13 @@ std::string file_named(const char* variable, const char* shipped) {
 struct Searched {
   Retriever retriever{load_model(file_named("REMOMASK_MODEL", "base.safetensors")).at("retriever")};
   Database database{file_named("REMOMASK_DATABASE", "procedural.sqlite"), OpenMode::read_only};
-  VectorIndex index =
-      VectorIndex::open(default_index_path(database.path()), database, retriever.hash());
+  std::shared_ptr<const SearchState> state = std::make_shared<SearchState>(
+      VectorIndex::open(default_index_path(database.path()), database, retriever.hash()),
+      database.clips());
   std::vector<std::string> queries;
 
   Searched() {
-    const std::vector<Clip> clips = database.clips();
+    const std::vector<Clip>& clips = state->clips;
     for (int i = 0; i < kQueries; ++i) {
       const Clip& clip = clips[clips.size() * static_cast<size_t>(i) / kQueries];
       queries.push_back(clip.captions.empty() ? clip.name : clip.captions.front());
@@ -46,9 +48,10 @@ struct Searched {
   }
   size_t search(const std::string& text) const {
     const at::Tensor query = retriever.encode_text({text}).query.contiguous();
-    SearchOptions options;
-    options.collapse = Collapse::groups;
-    return search_database(database, index, query.data_ptr<float>(), 1, options).front().size();
+    const float* numbers = query.data_ptr<float>();
+    SearchScene scene;
+    scene.state = state;
+    return collect_hits(scene, {}, {{numbers, numbers + query.numel()}, {}}).hits.size();
   }
 };
 
@@ -58,9 +61,9 @@ void text_query(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(searched.search(searched.queries[next++ % kQueries]));
   }
-  state.SetLabel(std::to_string(searched.index.count()) + " clips");
-  report_floor(state, 4.0 * static_cast<double>(searched.index.count()) * searched.index.width() /
-                          memory_read_rate());
+  state.SetLabel(std::to_string(searched.state->index.count()) + " clips");
+  report_floor(state, 4.0 * static_cast<double>(searched.state->index.count()) *
+                          searched.state->index.width() / memory_read_rate());
 }
 
 double quantile(std::vector<double> values, double share) {

@@ -110,7 +110,7 @@ void register_generate(CLI::App& app, Program& program) {
                    made.generated.motion.frames, made.generated.motion.frames / 20.0, seconds,
                    seed);
         if (i == 0 && !made.hits.empty()) fmt::print("made from the retrieved motions\n");
-        for (const SearchHit& hit : made.hits) {
+        for (const MotionHit& hit : made.hits) {
           if (i > 0) break;
           fmt::print("  {:.3f}  {:<28} {}\n", hit.similarity, hit.clip.name,
                      hit.clip.captions.empty() ? "" : hit.clip.captions.front());

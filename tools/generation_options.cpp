@@ -61,12 +61,9 @@ EvidencedMotion GenerationWorkspace::generate(const std::string& prompt, uint64_
   options.use_retrieval = !options_.no_retrieval;
   if (frames > 0) options.seconds = frames / 20.0;
   if (!options_.no_retrieval) {
-    SearchOptions search;
-    search.k = static_cast<int>(generator_.max_hits());
-    search.filter = evidence;
-    search.collapse = Collapse::groups;
-    if (search.k > 0) result.hits = search_.search(prompt, search);
-    for (const SearchHit& hit : result.hits) {
+    const auto k = static_cast<int>(generator_.max_hits());
+    if (k > 0) result.hits = search_.search(prompt, k, evidence);
+    for (const MotionHit& hit : result.hits) {
       const auto vectors = search_.database().embedding(search_.retriever().hash(), hit.clip.id);
       if (!vectors || vectors->text.empty()) continue;
       RetrievedMotion motion{hit.clip.id,    vectors->motion, vectors->text,

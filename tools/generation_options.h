@@ -20,7 +20,7 @@ struct GenerationOptions {
 /// A generated motion with the clips it was made from.
 struct EvidencedMotion {
   Generated generated;
-  std::vector<SearchHit> hits;
+  std::vector<MotionHit> hits;
 };
 
 /// A whole model with the database that it retrieves from.

@@ -88,7 +88,7 @@ nlohmann::json query_json(const SearchCommandOptions& options) {
 }
 
 nlohmann::json motion_hit_json(const MotionHit& hit) {
-  nlohmann::json json = hit_json({hit.clip, hit.similarity, hit.rank});
+  nlohmann::json json = hit_json(hit);
   json["folded"] = hit.folded;
   json["tags"] = hit.clip.tags;
   if (hit.probability) json["probability"] = *hit.probability;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "db/captions_index.h"
+#include "index/hit_list.h"
 
 namespace remomask {
 
@@ -78,16 +79,25 @@ SearchWorkspace::SearchWorkspace(const std::map<std::string, ModelStage>& stages
                                  const std::string& model_path, const std::string& database_path,
                                  const std::string& index_path)
     : retriever_(require_stage(stages, "retriever", model_path)),
-      database_(database_path, OpenMode::read_only),
-      index_(VectorIndex::open(index_path, database_, retriever_.hash())) {}
-
-std::vector<SearchHit> SearchWorkspace::search(const std::string& text,
-                                               const SearchOptions& options) const {
-  const at::Tensor query = retriever_.encode_text({text}).query.contiguous();
-  return search_database(database_, index_, query.data_ptr<float>(), 1, options).front();
+      database_(database_path, OpenMode::read_only) {
+  const ReadSnapshot snapshot(database_);
+  state_ = std::make_shared<SearchState>(
+      VectorIndex::open(index_path, database_, retriever_.hash()), database_.clips());
 }
 
-nlohmann::json hit_json(const SearchHit& hit) {
+std::vector<MotionHit> SearchWorkspace::search(const std::string& text, int k,
+                                               const ClipFilter& filter) const {
+  const at::Tensor vector = retriever_.encode_text({text}).query.contiguous();
+  const float* numbers = vector.data_ptr<float>();
+  SearchScene scene;
+  scene.state = state_;
+  if (!filter.empty()) scene.allowed = matching_clips(database_, state_->clips, filter);
+  SearchQuery query;
+  query.k = k;
+  return collect_hits(scene, query, {{numbers, numbers + vector.numel()}, {}}).hits;
+}
+
+nlohmann::json hit_json(const MotionHit& hit) {
   return {{"rank", hit.rank},
           {"clip_id", hit.clip.id},
           {"clip", hit.clip.name},
@@ -99,9 +109,9 @@ nlohmann::json hit_json(const SearchHit& hit) {
           {"seconds", clip_seconds(hit.clip)}};
 }
 
-nlohmann::json hits_json(const std::vector<SearchHit>& hits) {
+nlohmann::json hits_json(const std::vector<MotionHit>& hits) {
   nlohmann::json list = nlohmann::json::array();
-  for (const SearchHit& hit : hits) list.push_back(hit_json(hit));
+  for (const MotionHit& hit : hits) list.push_back(hit_json(hit));
   return list;
 }
 

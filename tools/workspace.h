@@ -2,13 +2,15 @@
 
 #include <CLI/App.hpp>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "db/database.h"
-#include "index/search.h"
-#include "index/vector_index.h"
+#include "index/query.h"
+#include "index/search_answer.h"
+#include "index/search_scene.h"
 #include "nn/model_file.h"
 #include "retriever/retriever.h"
 #include "tools/program.h"
@@ -45,13 +47,14 @@ class SearchWorkspace {
 
   const Retriever& retriever() const { return retriever_; }
   const Database& database() const { return database_; }
-  const VectorIndex& index() const { return index_; }
-  std::vector<SearchHit> search(const std::string& text, const SearchOptions& options) const;
+  const VectorIndex& index() const { return state_->index; }
+  /// The best `k` clips, one a group, in the state of the database that was opened.
+  std::vector<MotionHit> search(const std::string& text, int k, const ClipFilter& filter) const;
 
  private:
   Retriever retriever_;
   Database database_;
-  VectorIndex index_;
+  std::shared_ptr<const SearchState> state_;
 };
 
 /// The stage of `kind`; throws Error that names the model file when it lacks it.
@@ -59,10 +62,10 @@ const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
                                 const std::string& kind, const std::string& model_path);
 
 /// One hit as it is printed.
-nlohmann::json hit_json(const SearchHit& hit);
+nlohmann::json hit_json(const MotionHit& hit);
 
 /// Evidence as it is printed and stored in generated files.
-nlohmann::json hits_json(const std::vector<SearchHit>& hits);
+nlohmann::json hits_json(const std::vector<MotionHit>& hits);
 
 /// Such evidence in one line: "retrieved: NAME (0.81), ..."; empty without hits.
 std::string evidence_line(const nlohmann::json& hits);
