@@ -1,6 +1,6 @@
 #!/bin/bash
-# Kills the program with SIGKILL at random moments while it writes a database,
-# and looks after each kill whether anything was lost or broken:
+# Kills the program with SIGKILL at random moments, four of five between its first
+# write and its answer, and looks after each kill whether anything was lost or broken:
 #   - remomask db check finds no defect;
 #   - a command that said it had succeeded is stored as a whole; of one that was
 #     killed, an add or import left whole files, a tag or remove all or nothing;
@@ -70,37 +70,59 @@ prepare() {
   tail -n 60 "$pool/captions.jsonl" | sed -E 's/^\{"clip":"([^"]*)".*/\1/' | sort >"$work/files"
   batches=$((60 / batch_size))
   "$remomask" --quiet import "$work/batches/0" --db "$database" >/dev/null
-  local start
-  start=$(date +%s%3N)
   "$remomask" --quiet index "$database" >/dev/null
-  duration[index]=$(($(date +%s%3N) - start))
   next_batch=1
   names >"$work/before"
 }
 
-# Runs a command and kills it after a random part of the time that such commands
-# take. Sets `outcome` to acknowledged, or to killed when it did not say it succeeded.
+# True when a file of the database or its index was written since the marker was made.
+writing() {
+  [ -s "$database-wal" ] && [ "$database-wal" -nt "$work/marker" ] && return 0
+  [ "$database.index" -nt "$work/marker" ] || [ "$database.index.delta" -nt "$work/marker" ] ||
+    compgen -G "$database.index*.tmp-*" >/dev/null
+}
+
+# True while the program runs and has not answered.
+working() { [ ! -s "$work/output" ] && kill -0 "$1" 2>/dev/null; }
+
+# Waits for a part of the microseconds `$2`, or until program `$1` has answered.
+wait_part() {
+  local end=$((${EPOCHREALTIME/./} + (RANDOM * 32768 + RANDOM) % ($2 + $2 / 5 + 1)))
+  # No sleep is as short as a commit.
+  while [ "${EPOCHREALTIME/./}" -lt "$end" ] && working "$1"; do :; done
+}
+
+# Runs a command and kills it, most often after a random part of the time that such
+# commands take from their first write to their answer, else of their whole time. Sets
+# `outcome` to acknowledged, or to killed when it did not say it succeeded.
 run_and_kill() {
-  local start end allowed delay pid
-  allowed=${duration[$operation]:-1500}
-  delay=$((RANDOM % (allowed + allowed / 5 + 1)))
-  start=$(date +%s%3N)
+  local phase=$operation.whole begun=0 start pid status=0
+  touch "$work/marker"
+  : >"$work/output"
   "$remomask" --quiet "$@" >"$work/output" 2>"$work/errors" &
   pid=$!
-  # A command that has ended is not waited for.
-  timeout "$(awk "BEGIN{print $delay / 1000 + 0.001}")" \
-    tail --pid="$pid" -s 0.02 -f /dev/null || true
+  if [ $((RANDOM % 5)) != 0 ]; then
+    phase=$operation.writing
+    until writing || ! working "$pid"; do :; done
+    ! writing || begun=1
+  fi
+  start=${EPOCHREALTIME/./}  # in microseconds
+  local allowed=${duration[$phase]:-${expected[${phase#*.}]}}
+  wait_part "$pid" "$allowed"
+  local answered=0
+  working "$pid" || answered=$((${EPOCHREALTIME/./} - start))
   kill -9 "$pid" 2>/dev/null || true
-  local status=0
   wait "$pid" 2>/dev/null || status=$?
-  end=$(date +%s%3N)
-  if [ "$status" = 0 ] || grep -q '[a-z]' "$work/output"; then
+  if [ "$status" = 0 ] || [ -s "$work/output" ]; then
     outcome=acknowledged
-    duration[$operation]=$((end - start))
+    [ "$answered" = 0 ] || duration[$phase]=$answered
   elif [ "$status" = 137 ]; then
     outcome=killed
     # Else an operation that never gets to its end would never be seen to.
-    duration[$operation]=$((allowed + allowed / 4))
+    duration[$phase]=$((allowed + allowed / 4))
+    if [ "$begun" = 1 ] || writing; then
+      in_writing[$operation]=$((${in_writing[$operation]:-0} + 1))
+    fi
   else
     fail "ended with $status: $(cat "$work/errors")"
   fi
@@ -195,7 +217,8 @@ try_index() {
   expect_clips + whole
 }
 
-declare -A duration killed finished
+declare -A duration killed finished in_writing
+declare -A expected=([whole]=1500000 [writing]=20000)  # microseconds
 half=0
 searches=0
 answered=0
@@ -242,7 +265,10 @@ cmp "$work/searched" "$work/fresh" || fail "searches with a fresh index give som
 "$remomask" --quiet db check "$database"
 echo "$rounds rounds in $(($(date +%s) - began)) s; $answered of $searches searches found a current index"
 for name in "${operations[@]}"; do
-  echo "  $name: ${killed[$name]:-0} killed, ${finished[$name]:-0} had ended before"
+  echo "  $name: ${killed[$name]:-0} killed, ${in_writing[$name]:-0} of them while writing; ${finished[$name]:-0} had ended before"
+  all_killed=$((${all_killed:-0} + ${killed[$name]:-0}))
+  all_in_writing=$((${all_in_writing:-0} + ${in_writing[$name]:-0}))
 done
+echo "  $all_in_writing of $all_killed kills hit between the first write and the answer"
 echo "  $half of the killed ones had stored all or part of their work"
 echo "nothing acknowledged was lost, every check passed, searches equal those of a fresh index"
