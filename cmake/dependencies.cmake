@@ -1,3 +1,4 @@
+# Also installed, for find_package(remomask): what the libraries are linked with.
 find_package(Threads REQUIRED)
 find_package(Torch REQUIRED)
 find_package(SQLite3 REQUIRED)
@@ -7,7 +8,6 @@ find_package(Eigen3 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
-pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 pkg_check_modules(ARCHIVE REQUIRED IMPORTED_TARGET libarchive)
 
 # Debian ships FAISS as a static library without CMake files; BLAS and LAPACK
@@ -17,11 +17,11 @@ find_path(FAISS_INCLUDE faiss/Index.h REQUIRED)
 find_library(FAISS_LIBRARY faiss REQUIRED)
 find_library(BLAS_LIBRARY blas REQUIRED)
 find_library(LAPACK_LIBRARY lapack REQUIRED)
-add_library(remomask_faiss INTERFACE)
-target_include_directories(remomask_faiss SYSTEM INTERFACE ${FAISS_INCLUDE})
+add_library(remomask_faiss INTERFACE IMPORTED)
+target_include_directories(remomask_faiss INTERFACE ${FAISS_INCLUDE})
 target_link_libraries(remomask_faiss INTERFACE
   ${FAISS_LIBRARY} ${LAPACK_LIBRARY} ${BLAS_LIBRARY} OpenMP::OpenMP_CXX)
 
-add_library(remomask_torch INTERFACE)
-target_include_directories(remomask_torch SYSTEM INTERFACE ${TORCH_INCLUDE_DIRS})
+add_library(remomask_torch INTERFACE IMPORTED)
+target_include_directories(remomask_torch INTERFACE ${TORCH_INCLUDE_DIRS})
 target_link_libraries(remomask_torch INTERFACE ${TORCH_LIBRARIES} OpenMP::OpenMP_CXX)

@@ -1,0 +1,45 @@
+// From a sentence to a motion file: finds motions that resemble it, and makes a new
+// one of them.
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "generator/pipeline.h"
+#include "index/motion_search.h"
+#include "motion/motion_file.h"
+
+int main(int argc, char** argv) {
+  if (argc != 5) {
+    std::fprintf(stderr, "usage: %s MODEL DATABASE SENTENCE OUTPUT.bvh\n", argv[0]);
+    return 2;
+  }
+  try {
+    const std::string sentence = argv[3];
+    const remomask::Generator generator(remomask::load_model(argv[1]));
+    const remomask::MotionSearch search(argv[1], argv[2]);
+    const remomask::Database database(argv[2], remomask::OpenMode::read_only);
+
+    remomask::SearchQuery query;
+    query.text = sentence;
+    query.k = static_cast<int>(generator.max_hits());
+    std::vector<remomask::RetrievedMotion> retrieved;
+    for (const remomask::MotionHit& hit : search.search(query).hits) {
+      const auto vectors = database.embedding(generator.retriever().hash(), hit.clip.id);
+      if (!vectors || vectors->text.empty()) continue;
+      retrieved.push_back(
+          {hit.clip.id, vectors->motion, vectors->text, hit.similarity, hit.clip.frames});
+      std::printf("from: %s  %.3f\n", hit.clip.name.c_str(), hit.similarity);
+    }
+
+    remomask::GenerateOptions options;
+    options.seconds = 2;
+    options.seed = 1;
+    const remomask::Generated made = generator.generate(sentence, retrieved, options);
+    remomask::save_motion_file(argv[4], made.motion, {{"prompt", sentence}});
+    std::printf("%d frames in %s\n", made.motion.frames, argv[4]);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
