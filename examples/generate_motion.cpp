@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "generator/pipeline.h"
@@ -27,8 +28,12 @@ int main(int argc, char** argv) {
     for (const remomask::MotionHit& hit : search.search(query).hits) {
       const auto vectors = database.embedding(generator.retriever().hash(), hit.clip.id);
       if (!vectors || vectors->text.empty()) continue;
-      retrieved.push_back(
-          {hit.clip.id, vectors->motion, vectors->text, hit.similarity, hit.clip.frames});
+      remomask::RetrievedMotion motion{hit.clip.id,    vectors->motion, vectors->text,
+                                       hit.similarity, hit.clip.frames, {}};
+      if (static_cast<int64_t>(retrieved.size()) < generator.sequence_hits()) {
+        motion.poses = database.motion(hit.clip.id);
+      }
+      retrieved.push_back(std::move(motion));
       std::printf("from: %s  %.3f\n", hit.clip.name.c_str(), hit.similarity);
     }
 
