@@ -34,6 +34,16 @@ const BodyPartMap& body_parts(const Skeleton& skeleton) {
               "'; use humanml3d or kit");
 }
 
+std::vector<int> joint_parts(const Skeleton& skeleton) {
+  std::vector<int> result(skeleton.joints(), 0);
+  for (int part = 0; part < kBodyParts; ++part) {
+    for (const int slot : body_parts(skeleton).slots[part]) {
+      if (slot >= 0) result[slot] = part;
+    }
+  }
+  return result;
+}
+
 std::vector<int> part_columns(const Skeleton& skeleton, int part) {
   const int joints = skeleton.joints();
   const int rotations = 4 + 3 * (joints - 1), velocities = rotations + 6 * (joints - 1);

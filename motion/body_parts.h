@@ -23,6 +23,9 @@ struct BodyPartMap {
 /// Throws Error for a skeleton other than humanml3d and kit.
 const BodyPartMap& body_parts(const Skeleton& skeleton);
 
+/// Body part of every joint.
+std::vector<int> joint_parts(const Skeleton& skeleton);
+
 /// Feature columns of a part, slot by slot: for a joint its position (3),
 /// rotation (6) and velocity (3), the root joint having a velocity alone; for
 /// the root slot columns 0..3. The contacts come last in their leg. Each of the

@@ -62,9 +62,9 @@ Motion skip_first(const Motion& motion, int skip) {
   return skip == 0 ? motion : slice(motion, skip, motion.frames);
 }
 
-/// Raw positions at the source's rate -> canonical ones at 20 fps.
-void bring_to_canonical(Motion raw, const Motion* rest_pose, const MotionFileOptions& options,
-                        LoadedMotion& loaded) {
+/// Raw positions at the source's rate -> 20 fps, metres, Y up; canonical where asked for.
+void bring_to_metres(Motion raw, const Motion* rest_pose, const MotionFileOptions& options,
+                     LoadedMotion& loaded) {
   loaded.source_frames = raw.frames;
   raw = skip_first(raw, options.skip_frames);
   loaded.up_axis = options.up_axis ? *options.up_axis : detect_up_axis(raw, rest_pose);
@@ -76,7 +76,7 @@ void bring_to_canonical(Motion raw, const Motion* rest_pose, const MotionFileOpt
     value = static_cast<float>(value * loaded.metres_per_unit);
   }
   turn_up_axis(motion, loaded.up_axis);
-  loaded.motion = canonicalize(motion, skeleton);
+  loaded.motion = options.canonical ? canonicalize(motion, skeleton) : std::move(motion);
 }
 
 LoadedMotion load_bvh_motion(const std::string& path, const MotionFileOptions& options) {
@@ -89,7 +89,7 @@ LoadedMotion load_bvh_motion(const std::string& path, const MotionFileOptions& o
   LoadedMotion loaded;
   loaded.skeleton_map = map.name;
   loaded.source_fps = 1 / bvh.frame_time;
-  bring_to_canonical(std::move(raw), &rest, options, loaded);
+  bring_to_metres(std::move(raw), &rest, options, loaded);
   return loaded;
 }
 
@@ -117,7 +117,7 @@ LoadedMotion load_npy_motion(const std::string& path, const MotionFileOptions& o
   }
   LoadedMotion loaded;
   loaded.source_fps = skeleton.fps;
-  bring_to_canonical(std::move(raw), nullptr, options, loaded);
+  bring_to_metres(std::move(raw), nullptr, options, loaded);
   return loaded;
 }
 

@@ -13,12 +13,15 @@ struct MotionFileOptions {
   std::optional<double> metres_per_unit;  ///< default: guessed from the skeleton's size
   std::optional<char> up_axis;  ///< 'X', 'Y' or 'Z'; default: found from the rest of the body
   int skip_frames = 0;          ///< frames to drop at the start (source rate)
+  /// false: place, heading, floor and size of the body stay as in the file; only unit, up
+  /// axis and rate are changed. What is in metres, Y up and at 20 fps is read as it is.
+  bool canonical = true;
   std::string
       skeleton_map;  ///< name of a shipped map or path of a map file; empty: found by joint names
 };
 
 struct LoadedMotion {
-  Motion motion;             ///< canonical, 22 joints, 20 fps
+  Motion motion;             ///< canonical unless asked for otherwise, 22 joints, 20 fps
   std::string skeleton_map;  ///< the map that was used ("" for npy)
   double source_fps = 0;
   int source_frames = 0;

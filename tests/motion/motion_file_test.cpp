@@ -186,4 +186,16 @@ TEST(MotionFile, RefusesUnusableFilesAndOptions) {
   EXPECT_THROW(load_motion_file(temporary("b.npy"), options), Error);
 }
 
+TEST(MotionFile, PlaceAndSizeStayWhereCanonicalIsNotAskedFor) {
+  const Motion walk = moved(make_walker(30), 0.8, Vec3(2, 0.5, -3), 1.07);
+  MotionFileOptions as_it_is;
+  as_it_is.canonical = false;
+  save_motion_file(temporary("placed.npy"), walk);
+  EXPECT_EQ(load_motion_file(temporary("placed.npy"), as_it_is).motion.positions, walk.positions);
+  EXPECT_GT(largest_difference(load_motion_file(temporary("placed.npy")).motion, walk), 1);
+  save_motion_file(temporary("placed.bvh"), walk);
+  const Motion back = load_motion_file(temporary("placed.bvh"), as_it_is).motion;
+  EXPECT_LT(largest_difference(back, walk), 1e-4);
+}
+
 }  // namespace remomask
