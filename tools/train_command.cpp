@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "evaluation/evaluator_training.h"
 #include "generator/presets.h"
 #include "retriever/training.h"
 #include "tools/program.h"
@@ -109,13 +110,15 @@ class TrainingRun {
   }
 
   void train(const std::string& stage) {
-    const ModelStage result = stage == "text"        ? train_text()
+    const ModelStage result = stage == "evaluator"   ? train_evaluator_stage()
+                              : stage == "text"      ? train_text()
                               : stage == "retriever" ? train_retriever_stage()
                               : stage == "tokenizer" ? train_tokenizer_stage()
                               : stage == "masked"    ? train_masked_stage()
                                                      : train_residual_stage();
-    save_model(stage_path(stage), {result});
+    save_model(stage_path(stage), {result}, /*half=*/stage == "evaluator");
     fs::remove(stage_path(stage) + ".checkpoint");
+    fs::remove(stage_path(stage) + ".checkpoint.movement");
     program_.finish_progress();
     if (options_.stage != "all") fmt::print("{}\n", stage_path(stage));
   }
@@ -158,6 +161,14 @@ class TrainingRun {
                           monitor_);
   }
 
+  ModelStage train_evaluator_stage() {
+    auto options = adjusted(EvaluatorTrainingOptions(options_.preset), "evaluator");
+    options.movement.seed = options_.seed;
+    if (options_.batch) options.batch = *options_.batch;
+    return train_evaluator(clips("train"), clips("val"), evaluator_preset(options_.preset), options,
+                           monitor_);
+  }
+
   TransformerTrainingOptions transformer_options(const std::string& stage) {
     auto options = adjusted(stage == "masked" ? masked_training_preset(options_.preset)
                                               : residual_training_preset(options_.preset),
@@ -192,9 +203,12 @@ void register_train(CLI::App& app, Program& program) {
   CLI::App* command =
       add_command(app, "train", "train one network or all; the same command resumes",
                   "remomask train all --db motions.sqlite --preset base -o run");
-  command->add_option("stage", options->stage, "text, retriever, tokenizer, masked, residual, all")
+  command
+      ->add_option("stage", options->stage,
+                   "text, retriever, tokenizer, masked, residual, all (of these), evaluator")
       ->required()
-      ->check(CLI::IsMember({"text", "retriever", "tokenizer", "masked", "residual", "all"}));
+      ->check(CLI::IsMember(
+          {"text", "retriever", "tokenizer", "masked", "residual", "all", "evaluator"}));
   command->add_option("--db", options->database, "database with splits train and val")->required();
   command->add_option("-o,--output", options->folder, "folder of the stage files")->required();
   command->add_option("--preset", options->preset, "tiny, base, paper or momask")

@@ -1,4 +1,4 @@
-#include "retriever_test_tools.h"
+#include "tests/retriever/retriever_test_tools.h"
 
 #include <torch/utils.h>
 

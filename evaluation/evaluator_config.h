@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "motion/features.h"
+
+namespace remomask {
+
+/// Sizes of the text-motion evaluator (Guo et al., CVPR 2022). The defaults are
+/// the preset `base`.
+struct EvaluatorConfig {
+  std::string preset = "base";
+  std::string skeleton = "humanml3d";
+  FeatureMode mode = FeatureMode::fixed;
+  int64_t movement_width = 256;  ///< of the convolutions and of their output
+  int64_t motion_hidden = 256;   ///< of the GRU over movement tokens, each direction
+  int64_t text_hidden = 192;     ///< of the GRU over words, each direction
+  int64_t word_width = 96;
+  int64_t embedding = 128;  ///< E
+  int64_t max_words = 20;   ///< of a caption that are read
+  int64_t max_frames = 196;
+  /// Root velocity and height count this many times more than their deviation.
+  double root_weight = 5;
+  std::vector<std::string> vocabulary;  ///< "sos", "eos", "unk", words; made by the training
+};
+
+/// "tiny" (tests), "base" (default) or "paper" (sizes of the publication).
+/// Throws Error for another name.
+EvaluatorConfig evaluator_preset(const std::string& preset);
+
+void to_json(nlohmann::json& json, const EvaluatorConfig& config);
+void from_json(const nlohmann::json& json, EvaluatorConfig& config);
+
+}  // namespace remomask

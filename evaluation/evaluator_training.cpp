@@ -1,0 +1,370 @@
+#include "evaluation/evaluator_training.h"
+
+#include <torch/utils.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/random.h"
+#include "evaluation/evaluator_network.h"
+#include "evaluation/evaluator_quality.h"
+#include "retriever/training.h"
+#include "text/caption.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr uint64_t kWindowStream = 0x77696e, kPairStream = 0x706169;
+constexpr int kValidationDraws = 4;
+constexpr int64_t kValidationBatch = 32;
+constexpr double kCodePenalty = 0.001, kSmoothPenalty = 0.001;
+
+std::string evaluator_set_identity(const std::vector<TrainingClip>& clips) {
+  std::string text;
+  for (const TrainingClip& clip : clips) {
+    text += clip.name + '\t' + std::to_string(clip.features.frames) + '\t';
+    for (const std::string& caption : clip.captions) text += caption + '\t';
+    text += clip.meaning + '\n';
+  }
+  return content_hash(text);
+}
+
+std::vector<TrainingClip> evaluator_clips(const std::vector<TrainingClip>& clips) {
+  std::vector<TrainingClip> result;
+  for (const TrainingClip& clip : clips) {
+    if (clip.features.frames < kFramesPerMovement) continue;
+    TrainingClip kept = clip;
+    std::erase_if(kept.captions,
+                  [](const std::string& text) { return normalise_caption(text).empty(); });
+    if (!kept.captions.empty()) result.push_back(std::move(kept));
+  }
+  return result;
+}
+
+/// Stage 1: the movement encoder of a network with a decoder.
+class MovementAutoencoder : public torch::nn::Module {
+ public:
+  explicit MovementAutoencoder(EvaluatorNetwork& network)
+      : encoder_(register_module("encoder", network->movement_encoder())),
+        decoder_(register_module(
+            "decoder", MovementDecoder(network->config().movement_width, network->columns()))) {}
+
+  at::Tensor loss(const at::Tensor& motion) {
+    const at::Tensor codes = encoder_(motion.slice(2, 0, motion.size(2) - kContactColumns));
+    const at::Tensor steps = codes.slice(1, 1) - codes.slice(1, 0, codes.size(1) - 1);
+    return (decoder_(codes) - motion).abs().mean() + kCodePenalty * codes.abs().mean() +
+           kSmoothPenalty * steps.abs().mean();
+  }
+
+ private:
+  MovementEncoder encoder_;
+  MovementDecoder decoder_;
+};
+
+at::Tensor random_windows(const EvaluatorNetwork& network,
+                          const std::vector<const TrainingClip*>& clips,
+                          const EvaluatorTrainingOptions& options, int64_t step) {
+  CounterRandom random(options.movement.seed, mix_seed(kWindowStream, static_cast<uint64_t>(step)));
+  std::vector<EvaluatorCrop> crops;
+  const int window = static_cast<int>(options.window);
+  for (int64_t i = 0; i < options.movement_batch; ++i) {
+    const Features& features = clips[random.below(clips.size())]->features;
+    const auto starts = static_cast<size_t>(features.frames - window + 1);
+    crops.push_back({&features, static_cast<int>(random.below(starts)), window});
+  }
+  // Without the zeros that follow a motion's end.
+  return network->batch(crops).features.slice(1, 0, window);
+}
+
+void train_movement_encoder(EvaluatorNetwork& network, const std::vector<TrainingClip>& clips,
+                            const EvaluatorTrainingOptions& options, const nlohmann::json& identity,
+                            const Monitor& monitor) {
+  std::vector<const TrainingClip*> usable;
+  for (const TrainingClip& clip : clips) {
+    if (clip.features.frames >= options.window) usable.push_back(&clip);
+  }
+  if (usable.empty()) {
+    throw Error("no training clip has the " + std::to_string(options.window) +
+                " frames that the evaluator's movement encoder is trained on");
+  }
+  TrainerOptions trainer_options = options.movement;
+  if (!options.trainer.checkpoint_path.empty()) {
+    trainer_options.checkpoint_path = options.trainer.checkpoint_path + ".movement";
+    trainer_options.checkpoint_seconds = options.trainer.checkpoint_seconds;
+  }
+  MovementAutoencoder autoencoder(network);
+  Trainer trainer(autoencoder, trainer_options, identity);
+  trainer.run(
+      [&](int64_t step) {
+        return StepResult{autoencoder.loss(random_windows(network, usable, options, step)), {}};
+      },
+      monitor);
+}
+
+/// Stage 2, with the best state so far in buffers: they are part of the
+/// checkpoint, so that a resumed run keeps it.
+class EvaluatorSelection : public torch::nn::Module {
+ public:
+  explicit EvaluatorSelection(EvaluatorNetwork& network)
+      : network_(register_module("network", network)),
+        best_figure_(register_buffer("best_figure", torch::full({1}, -1, torch::kDouble))),
+        best_step_(register_buffer("best_step", torch::zeros({1}, torch::kLong))) {
+    for (const auto& [name, tensor] : module_tensors(*network_)) {
+      std::string flat = name;
+      std::replace(flat.begin(), flat.end(), '.', '/');  // names of buffers hold no dot
+      best_[name] = register_buffer("best/" + flat, tensor);
+    }
+  }
+
+  void offer(double figure, int64_t step) {
+    if (!(figure > best_figure_.item<double>())) return;  // also for no number
+    best_figure_.fill_(figure);
+    best_step_.fill_(step);
+    for (const auto& [name, tensor] : module_tensors(*network_)) best_.at(name).copy_(tensor);
+  }
+
+  bool has_best() const { return best_figure_.item<double>() >= 0; }
+  int64_t best_step() const { return best_step_.item<int64_t>(); }
+  const TensorMap& best() const { return best_; }
+
+ private:
+  EvaluatorNetwork network_;
+  at::Tensor best_figure_, best_step_;
+  TensorMap best_;
+};
+
+at::Tensor shifted_pairs(int64_t batch, int64_t shifts, CounterRandom& random) {
+  at::Tensor pairs = torch::zeros({batch, batch}, torch::kBool);
+  if (batch < 2) return pairs;
+  const std::vector<size_t> order = random.permutation(static_cast<size_t>(batch - 1));
+  const int64_t used = std::min(shifts, batch - 1);
+  for (int64_t s = 0; s < used; ++s) {
+    const auto shift = static_cast<int64_t>(order[static_cast<size_t>(s)]) + 1;
+    for (int64_t i = 0; i < batch; ++i) pairs.index_put_({i, (i + shift) % batch}, true);
+  }
+  return pairs;
+}
+
+/// Draws the batches of stage 2: a function of seed and step alone.
+class PairSource {
+ public:
+  PairSource(const std::vector<TrainingClip>& clips, const EvaluatorTrainingOptions& options)
+      : clips_(clips), options_(options) {}
+
+  StepResult step(EvaluatorNetwork& network, int64_t step) {
+    CounterRandom random(options_.trainer.seed, mix_seed(kPairStream, static_cast<uint64_t>(step)));
+    std::vector<const TrainingClip*> chosen;
+    std::vector<std::string> captions;
+    std::vector<EvaluatorCrop> crops;
+    for (const size_t index : members(static_cast<uint64_t>(step))) {
+      const TrainingClip& clip = clips_[index];
+      chosen.push_back(&clip);
+      captions.push_back(clip.captions[random.below(clip.captions.size())]);
+      crops.push_back(crop(clip.features, random));
+    }
+    const at::Tensor mismatched =
+        may_mismatch(chosen, captions)
+            .logical_and(
+                shifted_pairs(static_cast<int64_t>(chosen.size()), options_.shifts, random));
+    WordBatch words = network->words().encode(captions);
+    drop_words(words, random);
+    const at::Tensor text = network->embed_text(words),
+                     motion = network->embed_motion(network->batch(crops));
+    const at::Tensor loss = evaluator_loss(text, motion, mismatched, options_.margin);
+    return {loss, {{"matched", matching_distance(text.detach(), motion.detach())}}};
+  }
+
+ private:
+  EvaluatorCrop crop(const Features& features, CounterRandom& random) const {
+    const auto share = random.uniform(options_.least_crop, 1);
+    const int frames =
+        std::max(static_cast<int>(kFramesPerMovement), static_cast<int>(share * features.frames));
+    const auto starts = static_cast<size_t>(features.frames - frames + 1);
+    return {&features, static_cast<int>(random.below(starts)), frames};
+  }
+
+  void drop_words(WordBatch& words, CounterRandom& random) const {
+    int64_t* ids = words.ids.data_ptr<int64_t>();
+    int64_t* classes = words.classes.data_ptr<int64_t>();
+    for (int64_t i = 0; i < words.ids.numel(); ++i) {
+      if (random.uniform() >= options_.word_drop || ids[i] <= EvaluatorWords::kUnknown) continue;
+      ids[i] = EvaluatorWords::kUnknown;
+      classes[i] = static_cast<int64_t>(WordClass::other);
+    }
+  }
+
+  const std::vector<size_t>& members(uint64_t step) {
+    if (batches_.empty()) load_epoch(0);
+    const uint64_t epoch = step / batches_.size();  // every epoch has equally many batches
+    if (epoch != epoch_) load_epoch(epoch);
+    return batches_[step % batches_.size()];
+  }
+
+  void load_epoch(uint64_t epoch) {
+    batches_ = epoch_batches(clips_, options_.batch, options_.trainer.seed, epoch);
+    epoch_ = epoch;
+  }
+
+  const std::vector<TrainingClip>& clips_;
+  const EvaluatorTrainingOptions& options_;
+  std::vector<std::vector<size_t>> batches_;
+  uint64_t epoch_ = 0;
+};
+
+ModelStage evaluator_stage(const EvaluatorConfig& config, const TensorMap& tensors) {
+  return {"evaluator", config, tensors};
+}
+
+std::map<std::string, double> validate_evaluator(const Evaluator& evaluator,
+                                                 const std::vector<TrainingClip>& val,
+                                                 uint64_t seed) {
+  const auto pairs = real_pairs(evaluator, val, DistinctBy::captions, kValidationDraws, seed);
+  const std::set<BatchKeys> captions(pairs.front().keys.begin(), pairs.front().keys.end());
+  GenerationFigureOptions options;
+  options.draws = kValidationDraws;
+  options.batch = std::min(kValidationBatch, static_cast<int64_t>(captions.size()));
+  const GenerationFigures figures = measure_pairs(pairs, options);
+  return {{"top1", figures.r_precision[0].mean},
+          {"top2", figures.r_precision[1].mean},
+          {"top3", figures.r_precision[2].mean}};
+}
+
+nlohmann::json evaluator_run_identity(const EvaluatorConfig& config,
+                                      const std::vector<TrainingClip>& train,
+                                      const std::vector<TrainingClip>& val,
+                                      const EvaluatorTrainingOptions& options) {
+  return {{"config", config},
+          {"train", evaluator_set_identity(train)},
+          {"val", evaluator_set_identity(val)},
+          {"movement_steps", options.movement.steps},
+          {"movement_batch", options.movement_batch},
+          {"window", options.window},
+          {"batch", options.batch},
+          {"margin", options.margin},
+          {"shifts", options.shifts},
+          {"least_crop", options.least_crop},
+          {"word_drop", options.word_drop},
+          {"validation_every", options.validation_every}};
+}
+
+}  // namespace
+
+EvaluatorTrainingOptions::EvaluatorTrainingOptions(const std::string& preset) {
+  movement.stage_name = "evaluator movement";
+  movement.steps = 600;
+  movement.learning_rate = 1e-3;
+  movement.warmup_steps = 100;
+  movement.weight_decay = 0;
+  movement.ema_decay = 0.99;
+  trainer.stage_name = "evaluator";
+  trainer.steps = 2000;
+  trainer.learning_rate = 1e-3;
+  trainer.warmup_steps = 100;
+  trainer.weight_decay = 0.01;
+  trainer.ema_decay = 0.99;
+  if (preset == "tiny") {
+    movement.steps = 100;
+    movement_batch = 32;
+    trainer.steps = 200;
+    movement.warmup_steps = trainer.warmup_steps = 10;
+    movement.ema_decay = trainer.ema_decay = 0.9;
+    trainer.learning_rate = 3e-3;
+    batch = 32;
+    shifts = 31;
+    validation_every = 50;
+  } else if (preset == "paper") {
+    movement.steps = 100000;
+    movement.learning_rate = trainer.learning_rate = 1e-4;
+    trainer.steps = 30000;
+    trainer.clip_norm = 0.5;
+    trainer.weight_decay = 0;
+    movement.ema_decay = trainer.ema_decay = 0;
+    shifts = 1;
+    word_drop = 0;
+    validation_every = 400;
+  }
+}
+
+at::Tensor may_mismatch(const std::vector<const TrainingClip*>& clips,
+                        const std::vector<std::string>& captions) {
+  const auto count = static_cast<int64_t>(clips.size());
+  at::Tensor result = torch::zeros({count, count}, torch::kBool);
+  std::vector<std::string> texts;
+  for (const std::string& caption : captions) texts.push_back(normalise_caption(caption));
+  bool* pairs = result.data_ptr<bool>();
+  for (size_t i = 0; i < clips.size(); ++i) {
+    for (size_t j = 0; j < clips.size(); ++j) {
+      const bool alike = clips[i]->group == clips[j]->group || texts[i] == texts[j] ||
+                         (!clips[i]->meaning.empty() && clips[i]->meaning == clips[j]->meaning);
+      pairs[i * clips.size() + j] = !alike;
+    }
+  }
+  return result;
+}
+
+at::Tensor evaluator_loss(const at::Tensor& text, const at::Tensor& motion,
+                          const at::Tensor& mismatched, double margin) {
+  const at::Tensor squares = (text.unsqueeze(1) - motion.unsqueeze(0)).square().sum(2);  // [B, B]
+  const at::Tensor matched = squares.diagonal().mean();
+  const double count = static_cast<double>(mismatched.sum().item<int64_t>());
+  if (count == 0) return matched;
+  // The gradient of a root at zero is not finite.
+  const at::Tensor distances = (squares + 1e-12).sqrt();
+  const at::Tensor lacking = (margin - distances).clamp_min(0).square();
+  return matched + (lacking * mismatched).sum() / count;
+}
+
+ModelStage train_evaluator(const std::vector<TrainingClip>& train,
+                           const std::vector<TrainingClip>& val, EvaluatorConfig config,
+                           const EvaluatorTrainingOptions& options, const Monitor& monitor) {
+  const std::vector<TrainingClip> clips = evaluator_clips(train), val_clips = evaluator_clips(val);
+  if (clips.size() < 2) {
+    throw Error("the evaluator needs at least 2 training clips with captions, there are " +
+                std::to_string(clips.size()) + "; import a captions file");
+  }
+  std::vector<std::string> captions;
+  std::vector<const Features*> features;
+  for (const TrainingClip& clip : clips) {
+    captions.insert(captions.end(), clip.captions.begin(), clip.captions.end());
+    features.push_back(&clip.features);
+  }
+  config.vocabulary = evaluator_vocabulary(captions);
+
+  torch::manual_seed(options.trainer.seed);
+  EvaluatorNetwork network(config);
+  network->set_statistics(features);
+  const nlohmann::json identity = evaluator_run_identity(config, clips, val_clips, options);
+  train_movement_encoder(network, clips, options, identity, monitor);
+  for (at::Tensor& parameter : network->movement_encoder()->parameters()) {
+    parameter.requires_grad_(false);
+  }
+
+  EvaluatorSelection selection(network);
+  Trainer trainer(selection, options.trainer, identity);
+  if (!val_clips.empty()) {
+    trainer.set_validation(options.validation_every, [&](int64_t step) {
+      const Evaluator evaluator(evaluator_stage(config, module_tensors(*network)));
+      auto figures = validate_evaluator(evaluator, val_clips, options.trainer.seed);
+      selection.offer((figures["top1"] + figures["top2"] + figures["top3"]) / 3, step);
+      return figures;
+    });
+  }
+  PairSource source(clips, options);
+  trainer.run(
+      [&](int64_t step) {
+        network->movement_encoder()->eval();  // frozen, without dropout
+        return source.step(network, step);
+      },
+      monitor);
+
+  ModelStage stage =
+      evaluator_stage(config, selection.has_best() ? selection.best() : module_tensors(*network));
+  stage.config["history"] = trainer.history();
+  if (selection.has_best()) stage.config["selected_step"] = selection.best_step();
+  return stage;
+}
+
+}  // namespace remomask
