@@ -2,7 +2,9 @@
 
 #include <torch/utils.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "base/error.h"
@@ -14,14 +16,6 @@ namespace remomask {
 namespace {
 
 constexpr uint64_t kCaptionStream = 0x636170;
-
-std::vector<TrainingClip> clips_with_content(const std::vector<TrainingClip>& clips) {
-  std::vector<TrainingClip> kept;
-  for (const TrainingClip& clip : clips) {
-    if (!clip.content.empty()) kept.push_back(clip);
-  }
-  return kept;
-}
 
 }  // namespace
 
@@ -56,30 +50,87 @@ std::vector<EmbeddedPairs> real_pairs(const Evaluator& evaluator,
   return runs;
 }
 
-ContentAccuracy nearest_content(const Evaluator& evaluator, const std::vector<TrainingClip>& clips,
-                                const std::vector<TrainingClip>& gallery) {
-  const auto asked = clips_with_content(clips), known = clips_with_content(gallery);
-  const at::Tensor distances = torch::cdist(evaluator.embed_motion(clip_features(asked)),
-                                            evaluator.embed_motion(clip_features(known)), 2.0)
-                                   .contiguous();
+ContentAccuracy content_accuracy(const std::vector<int>& judged, const std::vector<bool>& members) {
   ContentAccuracy result;
-  for (size_t i = 0; i < asked.size(); ++i) {
-    const float* row = distances.data_ptr<float>() + i * known.size();
-    const TrainingClip* nearest = nullptr;
-    float least = std::numeric_limits<float>::infinity();
-    for (size_t j = 0; j < known.size(); ++j) {
-      if (known[j].group == asked[i].group || row[j] >= least) continue;
-      least = row[j];
-      nearest = &known[j];
-    }
-    if (nearest == nullptr) throw Error("the gallery has no clip outside the group of a clip");
+  for (size_t i = 0; i < judged.size(); ++i) {
+    if (judged[i] < 0 || (!members.empty() && !members[i])) continue;
     ++result.motions;
-    result.right += nearest->content == asked[i].content;
+    result.right += judged[i];
   }
   if (result.motions == 0) return result;
   result.accuracy = static_cast<double>(result.right) / result.motions;
   result.standard_error = std::sqrt(result.accuracy * (1 - result.accuracy) / result.motions);
   return result;
+}
+
+std::vector<int> nearest_contents(const Evaluator& evaluator,
+                                  const std::vector<TrainingClip>& clips,
+                                  const std::vector<TrainingClip>& gallery) {
+  const at::Tensor distances = torch::cdist(evaluator.embed_motion(clip_features(clips)),
+                                            evaluator.embed_motion(clip_features(gallery)), 2.0)
+                                   .contiguous();
+  std::vector<int> result;
+  for (size_t i = 0; i < clips.size(); ++i) {
+    if (clips[i].content.empty()) {
+      result.push_back(-1);
+      continue;
+    }
+    const float* row = distances.data_ptr<float>() + i * gallery.size();
+    const TrainingClip* nearest = nullptr;
+    float least = std::numeric_limits<float>::infinity();
+    for (size_t j = 0; j < gallery.size(); ++j) {
+      const bool usable = gallery[j].group != clips[i].group && !gallery[j].content.empty();
+      if (!usable || row[j] >= least) continue;
+      least = row[j];
+      nearest = &gallery[j];
+    }
+    if (nearest == nullptr) {
+      throw Error("the gallery has no clip outside the group of " + clips[i].name);
+    }
+    result.push_back(nearest->content == clips[i].content ? 1 : 0);
+  }
+  return result;
+}
+
+EvaluatorQuality measure_evaluator(const Evaluator& evaluator,
+                                   const std::vector<TrainingClip>& all_clips,
+                                   const std::vector<TrainingClip>& train,
+                                   const std::vector<TrainingClip>& val,
+                                   const GenerationFigureOptions& options) {
+  std::vector<TrainingClip> clips = all_clips;
+  std::erase_if(clips, [](const TrainingClip& clip) { return clip.captions.empty(); });
+  if (clips.empty()) throw Error("no clip has a caption; import a captions file");
+  const auto by_captions =
+      real_pairs(evaluator, clips, DistinctBy::captions, options.draws, options.seed);
+  const auto by_labels =
+      real_pairs(evaluator, clips, DistinctBy::labels, options.draws, options.seed);
+  std::vector<TrainingClip> gallery = clips;
+  gallery.insert(gallery.end(), train.begin(), train.end());
+  gallery.insert(gallery.end(), val.begin(), val.end());
+  const std::vector<int> judged = nearest_contents(evaluator, clips, gallery);
+  std::map<std::string, int> training_clips;
+  for (const TrainingClip& clip : train) ++training_clips[clip.content];
+
+  EvaluatorQuality quality;
+  const auto add = [&](const char* name, const std::function<bool(const TrainingClip&)>& member) {
+    std::vector<bool> members;
+    for (const TrainingClip& clip : clips) members.push_back(member(clip));
+    if (std::find(members.begin(), members.end(), true) == members.end()) return;
+    quality.subsets.push_back({name, measure_pairs(by_captions, options, members),
+                               measure_pairs(by_labels, options, members),
+                               content_accuracy(judged, members)});
+  };
+  add("all", [](const TrainingClip&) { return true; });
+  add("take", [](const TrainingClip& clip) { return clip.unseen == "take"; });
+  add("pair", [](const TrainingClip& clip) { return clip.unseen == "pair"; });
+  add("rare", [&](const TrainingClip& clip) {
+    return !clip.content.empty() && training_clips[clip.content] < kRareClips;
+  });
+  if (clips.size() > 1 && train.size() > 1) {
+    quality.fid_to_train =
+        frechet_distance(by_captions.front().motion, evaluator.embed_motion(clip_features(train)));
+  }
+  return quality;
 }
 
 }  // namespace remomask

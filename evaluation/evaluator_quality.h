@@ -1,11 +1,14 @@
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "db/training_set.h"
 #include "evaluation/evaluator.h"
 #include "evaluation/generation_metrics.h"
+#include "evaluation/side_rule.h"
 
 namespace remomask {
 
@@ -29,10 +32,43 @@ struct ContentAccuracy {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ContentAccuracy, motions, right, accuracy, standard_error)
 
-/// How often the nearest clip of the gallery (Euclidean distance, never one of
-/// the same group) has the content of the clip. Clips without content are left
-/// out on both sides.
-ContentAccuracy nearest_content(const Evaluator& evaluator, const std::vector<TrainingClip>& clips,
-                                const std::vector<TrainingClip>& gallery);
+/// Of clips that are judged right (1), wrong (0) or not at all (-1); `members`
+/// (empty: all) restricts it.
+ContentAccuracy content_accuracy(const std::vector<int>& judged, const std::vector<bool>& members);
+
+/// For every clip whether the nearest clip of the gallery (Euclidean distance,
+/// never one of the same group) has its content: 1 or 0; -1 for a clip without
+/// content. Throws Error when the gallery has no clip of another group.
+std::vector<int> nearest_contents(const Evaluator& evaluator,
+                                  const std::vector<TrainingClip>& clips,
+                                  const std::vector<TrainingClip>& gallery);
+
+struct EvaluatorSubset {
+  std::string name;            ///< "all", "take", "pair" or "rare"
+  GenerationFigures captions;  ///< real pairs, batches with distinct captions
+  GenerationFigures labels;    ///< batches with distinct captions, contents and styles
+  ContentAccuracy content;
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EvaluatorSubset, name, captions, labels, content)
+
+/// What the evaluator says of real clips: the bounds of what it can say of
+/// generated ones.
+struct EvaluatorQuality {
+  std::vector<EvaluatorSubset> subsets;     ///< "all" first; empty ones are left out
+  double fid_to_train = 0;                  ///< of all clips to the training clips
+  std::map<std::string, SideCounts> sides;  ///< split -> the side rule on real clips
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EvaluatorQuality, subsets, fid_to_train, sides)
+
+/// Contents with fewer training clips are "rare".
+inline constexpr int kRareClips = 20;
+
+/// Figures of `clips` (without captions: left out); contents are looked for among
+/// train, val and the clips themselves. `sides` stays empty.
+EvaluatorQuality measure_evaluator(const Evaluator& evaluator,
+                                   const std::vector<TrainingClip>& clips,
+                                   const std::vector<TrainingClip>& train,
+                                   const std::vector<TrainingClip>& val,
+                                   const GenerationFigureOptions& options);
 
 }  // namespace remomask

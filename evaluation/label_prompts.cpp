@@ -38,17 +38,22 @@ std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
     for (const size_t i : random.permutation(members.size())) ordered.clips.push_back(members[i]);
     turns.emplace_back(content, std::move(ordered));
   }
+  size_t usable = 0;
+  for (const auto& [content, source] : turns) usable += source.clips.size();
+  const size_t wanted = count > 0 ? static_cast<size_t>(count) : usable;
   std::vector<LabelPrompt> prompts;
-  for (int i = 0; i < count; ++i) {
-    auto& [content, source] = turns[static_cast<size_t>(i) % turns.size()];
+  for (size_t turn = 0; prompts.size() < wanted; ++turn) {
+    auto& [content, source] = turns[turn % turns.size()];
+    if (count == 0 && source.taken == source.clips.size()) continue;
     const Clip& clip = *source.clips[source.taken % source.clips.size()];
     const size_t round = source.taken / source.clips.size();
     ++source.taken;
+    const std::string unseen = clip.labels.value("unseen", "");
     const size_t first = CounterRandom(mix_seed(seed, static_cast<uint64_t>(clip.id), 1))
                              .below(clip.captions.size());
     prompts.push_back({clip.id, clip.name, clip.group,
-                       clip.captions[(first + round) % clip.captions.size()], content, clip.frames,
-                       mix_seed(seed, static_cast<uint64_t>(i), 2)});
+                       clip.captions[(first + round) % clip.captions.size()], content, unseen,
+                       clip.frames, mix_seed(seed, prompts.size(), 2)});
   }
   return prompts;
 }

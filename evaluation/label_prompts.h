@@ -15,6 +15,7 @@ struct LabelPrompt {
   std::string group;    ///< Clip::group of that clip
   std::string text;     ///< one of its captions
   std::string content;  ///< clip_content of that clip
+  std::string unseen;   ///< label "unseen" of that clip: "take", "pair" or ""
   int frames = 0;       ///< of that clip, for generators that want the true length
   uint64_t seed = 0;    ///< for the generation
 };
@@ -22,8 +23,8 @@ struct LabelPrompt {
 /// `count` prompts from the clips of `split`, spread over the contents: in turn
 /// through the contents (alphabetical), each giving its clips in random order;
 /// clips come again, with another caption where they have one, when all were
-/// taken. Mirror copies and clips without content or caption are left out. A
-/// function of the arguments alone. Throws Error when no clip is left.
+/// taken; `count` 0: every clip once. Mirror copies and clips without content or
+/// caption are left out. A function of the arguments alone. Throws Error when no clip is left.
 std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
                                               const std::string& split, int count, uint64_t seed);
 

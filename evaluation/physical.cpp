@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 
@@ -11,7 +12,8 @@ namespace remomask {
 
 namespace {
 
-constexpr double kContactHeight = 0.05;  // m; both limits as in the foot skating ratio
+constexpr double kFloatingHeight = 0.10;  // m; a standing foot's joints are below it
+constexpr double kContactHeight = 0.05;   // m; both limits as in the foot skating ratio
 constexpr double kSkateSpeed = 0.5;  // m/s, of guided motion diffusion: 2.5 cm a frame at 20 fps
 
 void measure_bones(const Motion& motion, const Skeleton& skeleton, PhysicalMetrics& metrics) {
@@ -37,12 +39,14 @@ void measure_bones(const Motion& motion, const Skeleton& skeleton, PhysicalMetri
 
 void measure_floor(const Motion& motion, const Skeleton& skeleton, PhysicalMetrics& metrics) {
   for (int frame = 0; frame < motion.frames; ++frame) {
-    double depth = 0;
+    double lowest = std::numeric_limits<double>::infinity();
     for (const auto* feet : {&skeleton.left_feet, &skeleton.right_feet}) {
       for (const int joint : *feet) {
-        depth = std::max(depth, -static_cast<double>(motion.at(frame, joint)[1]));
+        lowest = std::min(lowest, static_cast<double>(motion.at(frame, joint)[1]));
       }
     }
+    const double depth = std::max(0.0, -lowest);
+    if (lowest > kFloatingHeight) metrics.floating_share += 1.0 / motion.frames;
     metrics.penetration_mean += depth / motion.frames;
     metrics.penetration_max = std::max(metrics.penetration_max, depth);
   }
@@ -116,6 +120,7 @@ PhysicalSummary summarise_physical(const std::vector<PhysicalMetrics>& metrics) 
     values.bone_length_max = std::max(values.bone_length_max, one.bone_length_max);
     values.penetration_mean += one.penetration_mean / finite;
     values.penetration_max = std::max(values.penetration_max, one.penetration_max);
+    values.floating_share += one.floating_share / finite;
     values.contact_share += one.contact_share / finite;
     values.foot_skate += one.foot_skate / finite;
     values.foot_skate_ratio += one.foot_skate_ratio / finite;

@@ -8,6 +8,10 @@ namespace remomask {
 
 void EvaluationInput::add(CLI::App& command) {
   files.add_model(command);
+  add_clips(command);
+}
+
+void EvaluationInput::add_clips(CLI::App& command) {
   files.add_database(command);
   command.add_option("--split", split, "clips to measure")->capture_default_str();
   command.add_option("--source", sources, "only these data sets (repeatable)");
@@ -39,6 +43,15 @@ nlohmann::json EvaluationInput::stamped(nlohmann::json document,
   return document;
 }
 
+void EvaluatorOption::add(CLI::App& command) {
+  command.add_option("--evaluator", path,
+                     "text-motion evaluator (.safetensors); default: the shipped one");
+}
+
+std::string EvaluatorOption::evaluator_path() const {
+  return path.empty() ? shipped_file("evaluator.safetensors") : path;
+}
+
 void register_evaluate(CLI::App& app, Program& program) {
   CLI::App* command = add_command(app, "evaluate", "measure a model on a split of a database",
                                   "remomask evaluate retrieval --db motions.sqlite");
@@ -47,6 +60,7 @@ void register_evaluate(CLI::App& app, Program& program) {
   register_evaluate_calibration(*command, program);
   register_evaluate_moments(*command, program);
   register_evaluate_queries(*command, program);
+  register_evaluate_evaluator(*command, program);
   register_evaluate_tokenizer(*command, program);
   register_evaluate_generation(*command, program);
 }

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
-#include "evaluation/generation_labels.h"
+#include <cmath>
+
+#include "evaluation/generation_report.h"
 #include "evaluation/motion_embedding.h"
 #include "generator/pipeline.h"
 #include "tools/evaluate_command.h"
@@ -9,64 +11,145 @@
 
 namespace remomask {
 
-void register_evaluate_generation(CLI::App& parent, Program& program) {
-  struct Options {
-    FileOptions files;
-    GenerationOptions generation;
-    GenerationLabelOptions labels;
+namespace {
+
+struct EvaluateGenerationOptions {
+  FileOptions files;
+  EvaluatorOption evaluator;
+  GenerationOptions generation;
+  GenerationRunOptions run;
+  GenerationReportOptions report;
+  std::string judge = "evaluator";
+};
+
+std::string figure_text(const Figure& figure) {
+  return std::isnan(figure.mean) ? "-"
+                                 : fmt::format("{:.3f} +-{:.3f}", figure.mean, figure.interval);
+}
+
+void print_row(const GenerationSubset& subset, const char* name, const MotionFigures& figures) {
+  const auto& top = figures.captions.r_precision;
+  const auto& by_labels = figures.labels.r_precision;
+  fmt::print("{:<6}{:<10}{:>7.1f}  {:>14}  {:>14}  {:>14}  {:>14}  {:>16}  {:>16}  {:>15}\n",
+             subset.name, name, 100 * figures.content.accuracy, figure_text(top[0]),
+             figure_text(top[1]), figure_text(top[2]), figure_text(by_labels[2]),
+             figure_text(figures.captions.fid), figure_text(figures.captions.mm_dist),
+             figure_text(figures.captions.diversity));
+}
+
+void print_body(const GenerationSubset& subset, const char* name, const MotionFigures& figures) {
+  const PhysicalMetrics& body = figures.physical.values;
+  const auto side = [](const SideCount& count) {
+    return count.asked == 0 ? std::string("-") : fmt::format("{} of {}", count.right, count.asked);
   };
-  auto options = std::make_shared<Options>();
+  fmt::print(
+      "{:<6}{:<10}{:>11}  {:>11}  {:>10.3f}  {:>9.2f}  {:>9.1f}  {:>8.2f}  {:>8.1f}  {:>7}\n",
+      subset.name, name, side(figures.sides.hands), side(figures.sides.turns), body.foot_skate,
+      100 * body.bone_length_mean, 100 * body.penetration_max, 100 * body.floating_share, body.jerk,
+      figures.physical.not_finite);
+}
+
+void print_report(const GenerationReport& report) {
+  const nlohmann::json& protocol = report.protocol;
+  fmt::print(
+      "protocol {}: {} prompts of {}, {} generations each, {} draws of batches of {}; chance "
+      "{:.1f} "
+      "%\njudge {}, {} gallery clips; evaluator {}\n\n",
+      protocol.at("protocol").get<std::string>(), report.subsets.front().prompts,
+      protocol.at("prompt_split").get<std::string>(), protocol.at("repeats").get<int>(),
+      protocol.at("draws").get<int>(), protocol.at("batch").get<int>(),
+      100 * report.subsets.front().chance, protocol.at("judge").get<std::string>(),
+      protocol.at("gallery_clips").get<int>(), protocol.at("evaluator").get<std::string>());
+  fmt::print("{:<16}{:>7}  {:>14}  {:>14}  {:>14}  {:>14}  {:>16}  {:>16}  {:>15}\n", "prompts",
+             "content", "R@1", "R@2", "R@3", "R@3, labels", "FID", "MM-Dist", "Diversity");
+  for (const GenerationSubset& subset : report.subsets) {
+    print_row(subset, "generated", subset.generated);
+    print_row(subset, "real", subset.real);
+  }
+  fmt::print("MultiModality {}\n\n", figure_text(report.multimodality));
+  fmt::print("{:<16}{:>11}  {:>11}  {:>10}  {:>9}  {:>9}  {:>8}  {:>8}  {:>7}\n", "prompts", "hand",
+             "turn", "skate m/s", "bones %", "deepest cm", "float %", "jerk", "broken");
+  for (const GenerationSubset& subset : report.subsets) {
+    print_body(subset, "generated", subset.generated);
+    print_body(subset, "real", subset.real);
+  }
+  const double skate = report.subsets.front().generated.physical.values.foot_skate,
+               real_skate = report.subsets.front().real.physical.values.foot_skate;
+  if (real_skate > 0)
+    fmt::print("foot skate {:.2f} times that of the real clips\n", skate / real_skate);
+  fmt::print("\n");
+  for (const auto& [content, count] : report.contents) {
+    fmt::print("  {:<28} {:3} of {:3}\n", content, count.right, count.motions);
+  }
+}
+
+void evaluate_generation(const EvaluateGenerationOptions& options, Program& program) {
+  const std::string model_path = options.files.model_path();
+  const auto stages = load_model(model_path);
+  const Evaluator evaluator = options.evaluator.load();
+  const GenerationWorkspace workspace(stages, model_path, options.files, options.generation);
+  const Database& database = workspace.search().database();
+  workspace.search().index().require_current(database);
+  const auto judge = options.judge == "evaluator"
+                         ? evaluator_judge(evaluator, database)
+                         : retriever_judge(workspace.search().index(), [&](const Motion& motion) {
+                             return embed_motion(workspace.search().retriever(), motion);
+                           });
+  const auto generate = [&](const LabelPrompt& prompt) {
+    // Evidence comes from training clips alone, never from the prompt's own motion.
+    ClipFilter evidence;
+    evidence.splits = {"train"};
+    evidence.excluded_groups = {prompt.group};
+    return workspace.generate(prompt.text, prompt.seed, evidence, prompt.frames).generated.motion;
+  };
+  GenerationRunOptions run_options = options.run;
+  run_options.generator = workspace.identity();
+  const JudgeGallery gallery(database, *judge, run_options.gallery_splits);
+  const GenerationRun run = run_generation(database, gallery, *judge, evaluator, generate,
+                                           run_options, program.monitor());
+  const GenerationReport report =
+      report_generation(run, database, gallery, evaluator, options.report);
+  program.finish_progress();
+  if (program.json) return program.print_json(report);
+  print_report(report);
+}
+
+}  // namespace
+
+void register_evaluate_generation(CLI::App& parent, Program& program) {
+  auto options = std::make_shared<EvaluateGenerationOptions>();
   CLI::App* command = add_command(
       parent, "generation",
-      "do generated motions show what their prompt asks for? (nearest real motion)",
+      "generated motions beside real ones: FID, R-precision, content, sides, physics",
       "remomask evaluate generation --db motions.sqlite --prompts 200 --results outcomes.jsonl");
   options->files.add_model(*command);
   options->files.add_database(*command);
+  options->evaluator.add(*command);
   options->generation.add(*command);
-  command->add_option("--prompts", options->labels.prompts, "number of prompts")
-      ->capture_default_str();
-  command->add_option("--split", options->labels.prompt_split, "captions of these clips")
-      ->capture_default_str();
-  command->add_option("--prompt-seed", options->labels.seed, "choice of the prompts")
-      ->capture_default_str();
+  GenerationRunOptions& run = options->run;
   command
-      ->add_option("--results", options->labels.results_path,
-                   "JSON Lines, one outcome a prompt; an existing file is continued")
+      ->add_option("--prompts", run.prompts, "number of prompts; 0: every clip of the split once")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--split", run.prompt_split, "captions of these clips")
+      ->capture_default_str();
+  command->add_option("--prompt-seed", run.seed, "choice of the prompts")->capture_default_str();
+  command->add_option("--repeats", run.repeats, "generations of every prompt (papers: 20)")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--modality-prompts", run.modality_prompts,
+                   "prompts with 30 more generations, for MultiModality (papers: 96)")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--judge", options->judge, "space in which the nearest real motion is found")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"evaluator", "retriever"}));
+  command
+      ->add_option("--results", run.results_path,
+                   "JSON Lines, one motion a line; an existing file is continued")
       ->required();
-  command->callback([options, &program] {
-    const std::string model_path = options->files.model_path();
-    const auto stages = load_model(model_path);
-    const GenerationWorkspace workspace(stages, model_path, options->files, options->generation);
-    GenerationLabelOptions labels = options->labels;
-    labels.generator = workspace.identity();
-    const auto generate = [&](const LabelPrompt& prompt) {
-      // Evidence comes from training clips alone, never from the prompt's own motion.
-      ClipFilter evidence;
-      evidence.splits = {"train"};
-      evidence.excluded_groups = {prompt.group};
-      return workspace.generate(prompt.text, prompt.seed, evidence, prompt.frames).generated.motion;
-    };
-    const auto embed = [&](const Motion& motion) {
-      return embed_motion(workspace.search().retriever(), motion);
-    };
-    const GenerationLabelReport report =
-        measure_generation_labels(workspace.search().database(), workspace.search().index(),
-                                  generate, embed, labels, program.monitor());
-    program.finish_progress();
-    if (program.json) return program.print_json(report);
-    fmt::print("{} of {} prompts right: {:.1f} % (standard error {:.1f}; chance {:.1f} %)\n",
-               report.right, report.prompts, 100 * report.accuracy, 100 * report.standard_error,
-               100 * report.chance);
-    for (const auto& [content, count] : report.labels) {
-      fmt::print("  {:<28} {:3} of {:3}\n", content, count.right, count.prompts);
-    }
-    const PhysicalMetrics& body = report.physical.values;
-    fmt::print(
-        "bones: mean error {:.2f} %, worst {:.2f} %; below the floor: worst {:.1f} cm; foot "
-        "skate {:.3f} m/s; {} motions not finite\n",
-        100 * body.bone_length_mean, 100 * body.bone_length_max, 100 * body.penetration_max,
-        body.foot_skate, report.physical.not_finite);
-  });
+  command->callback([options, &program] { evaluate_generation(*options, program); });
 }
 
 }  // namespace remomask

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "evaluation/reconstruction_fid.h"
 #include "generator/tokenizer_metrics.h"
 #include "tools/evaluate_command.h"
 #include "tools/workspace.h"
@@ -18,21 +19,39 @@ void print_reconstruction(const char* name, const ReconstructionErrors& errors) 
 }  // namespace
 
 void register_evaluate_tokenizer(CLI::App& parent, Program& program) {
-  auto input = std::make_shared<EvaluationInput>();
+  struct Options : EvaluationInput {
+    EvaluatorOption evaluator;
+  };
+  auto input = std::make_shared<Options>();
   CLI::App* command =
       add_command(parent, "tokenizer", "reconstruction error of the tokenizer, use of its codes",
                   "remomask evaluate tokenizer --db motions.sqlite");
   input->add(*command);
+  command->add_option("--evaluator", input->evaluator.path,
+                      "measure the reconstruction FID with this evaluator too");
   command->callback([input, &program] {
     const std::string model_path = input->files.model_path();
-    TokenizerNetwork network = load_tokenizer_network(load_stage(model_path, "tokenizer"));
+    const ModelStage stage = load_stage(model_path, "tokenizer");
+    TokenizerNetwork network = load_tokenizer_network(stage);
     const auto clips = input->load(FeatureMode::fixed);
     const TokenizerMetrics metrics = measure_tokenizer(network, clip_features(clips));
-    if (program.json) return program.print_json(input->stamped(metrics, clips));
+    std::optional<ReconstructionFid> fid;
+    nlohmann::json document = metrics;
+    if (!input->evaluator.path.empty()) {
+      const Evaluator evaluator = input->evaluator.load();
+      fid = measure_reconstruction_fid(evaluator, Tokenizer(stage), clip_features(clips));
+      document["fid"] = *fid;
+      document["evaluator"] = evaluator.hash();
+    }
+    if (program.json) return program.print_json(input->stamped(document, clips));
     fmt::print("split {}: {} clips, {} frames; MPJPE: root of every frame subtracted\n",
                input->split, metrics.clips, metrics.frames);
     print_reconstruction("all levels", metrics.all_levels);
     print_reconstruction("base level", metrics.base_level);
+    if (fid) {
+      fmt::print("FID         all levels {:.4f}   base level {:.4f}\n", fid->all_levels,
+                 fid->base_level);
+    }
     for (size_t level = 0; level < metrics.code_use.size(); ++level) {
       fmt::print("level {}     {:5.1f} % of the codes used, perplexity {:.0f}\n", level,
                  100 * metrics.code_use[level], metrics.perplexity[level]);

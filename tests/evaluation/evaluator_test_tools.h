@@ -13,4 +13,8 @@ EvaluatorConfig tiny_evaluator_config();
 /// Stage of an evaluator with random weights.
 ModelStage untrained_evaluator_stage(uint64_t seed);
 
+/// The uniform body stands with straight legs; its left toe and ankle are on
+/// the floor, the right ones 10.2 mm above (the right leg is shorter).
+Motion standing_body(int frames);
+
 }  // namespace remomask

@@ -69,6 +69,22 @@ TEST(LabelPrompts, AreAFunctionOfTheSeed) {
   EXPECT_NE(texts(1), texts(2));
 }
 
+TEST(LabelPrompts, ZeroMeansEveryClipOnce) {
+  auto clips = clips_of_three_contents();
+  clips[3].labels["unseen"] = "pair";
+  const auto prompts = choose_label_prompts(clips, "test", 0, 5);
+  ASSERT_EQ(prompts.size(), 13u);
+  std::set<std::string> names;
+  std::set<uint64_t> seeds;
+  for (const LabelPrompt& prompt : prompts) {
+    names.insert(prompt.clip);
+    seeds.insert(prompt.seed);
+    EXPECT_EQ(prompt.unseen, prompt.clip == clips[3].name ? "pair" : "");
+  }
+  EXPECT_EQ(names.size(), 13u);
+  EXPECT_EQ(seeds.size(), 13u);
+}
+
 TEST(LabelPrompts, RefuseASplitWithoutContents) {
   EXPECT_NE(
       error_of([] { choose_label_prompts(clips_of_three_contents(), "val", 3, 1); }).find("'val'"),

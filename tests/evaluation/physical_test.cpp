@@ -6,28 +6,10 @@
 #include <limits>
 
 #include "base/error.h"
+#include "tests/evaluation/evaluator_test_tools.h"
 
 namespace remomask {
 namespace {
-
-/// The uniform body stands with straight legs; its left toe and ankle are on
-/// the floor, the right ones 10.2 mm above (the right leg is shorter).
-Motion standing_body(int frames) {
-  const Skeleton& skeleton = humanml_skeleton();
-  Motion motion(frames, skeleton.joints());
-  const double hip_height = skeleton.bone_lengths[4] + skeleton.bone_lengths[7];
-  std::vector<Vec3> joints(static_cast<size_t>(skeleton.joints()), Vec3(0, hip_height, 0));
-  for (size_t joint = 1; joint < joints.size(); ++joint) {
-    joints[joint] = joints[static_cast<size_t>(skeleton.parents[joint])] +
-                    skeleton.bone_lengths[joint] * skeleton.rest_directions[joint];
-  }
-  for (int frame = 0; frame < frames; ++frame) {
-    for (int joint = 0; joint < motion.joints; ++joint) {
-      motion.set(frame, joint, joints[static_cast<size_t>(joint)]);
-    }
-  }
-  return motion;
-}
 
 void move_frame(Motion& motion, int frame, const Vec3& way) {
   for (int joint = 0; joint < motion.joints; ++joint) {
@@ -44,9 +26,17 @@ TEST(Physical, StandingBodyIsPerfect) {
   EXPECT_TRUE(metrics.finite);
   EXPECT_NEAR(metrics.bone_length_max, 0, 1e-5);
   EXPECT_NEAR(metrics.penetration_max, 0, 1e-6);
+  EXPECT_EQ(metrics.floating_share, 0);
   EXPECT_EQ(metrics.contact_share, 1);
   EXPECT_NEAR(metrics.foot_skate, 0, 1e-5);
   EXPECT_NEAR(metrics.jerk, 0, 1e-2);
+}
+
+TEST(Physical, FramesWithBothFeetInTheAirFloat) {
+  Motion motion = standing_body(4);
+  move_frame(motion, 2, Vec3(0, 0.11, 0));
+  move_frame(motion, 3, Vec3(0, 0.09, 0));
+  EXPECT_NEAR(measure(motion).floating_share, 0.25, 1e-9);
 }
 
 TEST(Physical, OneBoneTenPercentTooLong) {

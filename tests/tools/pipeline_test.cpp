@@ -150,10 +150,36 @@ TEST_F(PipelineTest, EvaluationsReportTheirProtocol) {
   EXPECT_EQ(queries["forms"][1]["overlap"], 100);  // upper case changes nothing
   const auto tokenizer = run_json(with_model({"evaluate", "tokenizer"}));
   EXPECT_GT(tokenizer["all_levels"]["mpjpe"].get<double>(), 0);
-  const auto generation = run_json(with_model(
-      {"evaluate", "generation", "--prompts", "4", "--results", path("outcomes.jsonl")}));
-  EXPECT_EQ(generation["prompts"], 4);
-  EXPECT_EQ(generation["physical"]["not_finite"], 0);
+}
+
+TEST_F(PipelineTest, AnEvaluatorJudgesGeneratedMotions) {
+  const ProgramResult trained =
+      run_program({"--quiet", "train", "evaluator", "--db", path("motions.sqlite"), "--preset",
+                   "tiny", "--steps", "20", "-o", path("judge")});
+  ASSERT_EQ(trained.exit_code, 0) << trained.errors;
+  const std::vector<std::string> evaluator = {"--evaluator", path("judge/evaluator.safetensors")};
+  const auto with_evaluator = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), evaluator.begin(), evaluator.end());
+    return arguments;
+  };
+  const auto quality = run_json(with_evaluator(
+      {"evaluate", "evaluator", "--db", path("motions.sqlite"), "--batch", "4", "--draws", "2"}));
+  EXPECT_GT(quality["subsets"][0]["captions"]["r_precision"][2]["mean"].get<double>(), 0);
+  EXPECT_GT(quality["sides"]["train"]["hands"]["asked"].get<int>(), 0);
+  const auto tokenizer = run_json(with_evaluator(with_model({"evaluate", "tokenizer"})));
+  EXPECT_GT(tokenizer["fid"]["all_levels"].get<double>(), 0);
+  const std::vector<std::string> generate =
+      with_evaluator(with_model({"evaluate", "generation", "--prompts", "4", "--modality-prompts",
+                                 "1", "--results", path("outcomes.jsonl")}));
+  const auto generation = run_json(generate);
+  const auto& all = generation["subsets"][0];
+  EXPECT_EQ(all["prompts"], 4);
+  EXPECT_EQ(all["generated"]["physical"]["not_finite"], 0);
+  EXPECT_GT(all["generated"]["captions"]["fid"]["mean"].get<double>(), 0);
+  EXPECT_GT(generation["multimodality"]["mean"].get<double>(), 0);
+  const ProgramResult table = run_program(generate);  // nothing is generated again
+  EXPECT_EQ(table.exit_code, 0) << table.errors;
+  EXPECT_NE(table.output.find("MultiModality"), std::string::npos);
 }
 
 TEST_F(PipelineTest, AnIndexFollowsItsDatabase) {
