@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/error.h"
+#include "evaluation/seams.h"
 
 namespace remomask {
 
@@ -74,16 +76,9 @@ void measure_skate(const Motion& motion, const Skeleton& skeleton, PhysicalMetri
 }
 
 void measure_jerk(const Motion& motion, const Skeleton& skeleton, PhysicalMetrics& metrics) {
-  if (motion.frames < 4) return;
-  double sum = 0;
-  for (int frame = 0; frame + 3 < motion.frames; ++frame) {
-    for (int joint = 0; joint < motion.joints; ++joint) {
-      sum += (motion.position(frame + 3, joint) - 3 * motion.position(frame + 2, joint) +
-              3 * motion.position(frame + 1, joint) - motion.position(frame, joint))
-                 .norm();
-    }
-  }
-  metrics.jerk = sum / ((motion.frames - 3.) * motion.joints) * std::pow(skeleton.fps, 3);
+  const std::vector<double> jerk = jerk_over_time(motion, skeleton);
+  if (jerk.empty()) return;
+  metrics.jerk = std::accumulate(jerk.begin(), jerk.end(), 0.0) / static_cast<double>(jerk.size());
 }
 
 }  // namespace

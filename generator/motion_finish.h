@@ -8,9 +8,20 @@ namespace remomask {
 /// keeps its direction. Decoded positions drift by some millimetres.
 void impose_bone_lengths(Motion& motion, const Skeleton& skeleton);
 
+/// Gaussian of `sigma` frames over time on every joint; beyond the ends the motion
+/// is continued as its own point reflection, so that it keeps its first and
+/// last pose. Bones change their length, see impose_bone_lengths().
+void smooth_over_time(Motion& motion, double sigma);
+
 /// Raises a motion whose lowest foot is more than `tolerance` (metres) below
 /// the floor, so that this foot touches it. Motions above the floor stay:
 /// jumps and climbs are meant to leave it. Returns by how much it was raised.
 double lift_to_floor(Motion& motion, const Skeleton& skeleton, double tolerance = 0.01);
+
+/// The same for long motions: raises only the surroundings of the frames whose
+/// lowest foot is below the floor, by a curve that is smooth over about `reach` frames on
+/// either side, so that one deep step does not lift minutes. Returns the
+/// largest raise, metres.
+double lift_to_floor_smoothly(Motion& motion, const Skeleton& skeleton, int reach = 10);
 
 }  // namespace remomask

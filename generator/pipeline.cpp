@@ -1,5 +1,6 @@
 #include "generator/pipeline.h"
 
+#include <fmt/format.h>
 #include <torch/types.h>
 
 #include <algorithm>
@@ -8,13 +9,19 @@
 
 #include "base/error.h"
 #include "generator/motion_finish.h"
+#include "generator/token_windows.h"
+#include "generator/tokenizer_network.h"
 #include "motion/features.h"
 
 namespace remomask {
 
 namespace {
 
-constexpr double kDefaultSeconds = 5, kLeastSeconds = 1, kMostSeconds = 9.8;
+// Frames. Tokens of neighbouring patches do not quite fit: without it the jerk of
+// generated motions is more than twice that of real ones.
+constexpr double kDecodeSmoothing = 0.8;
+
+constexpr double kDefaultSeconds = 5, kLeastSeconds = 1, kMostEstimated = 9.8, kMostSeconds = 600;
 
 const ModelStage& need_stage(const std::map<std::string, ModelStage>& stages,
                              const std::string& kind) {
@@ -152,49 +159,94 @@ const Tokenizer& Generator::tokenizer() const { return impl_->tokenizer; }
 int64_t Generator::max_hits() const { return impl_->masked->config().max_hits; }
 int64_t Generator::sequence_hits() const { return impl_->masked->config().sequence_hits; }
 
-int64_t token_frames(const std::optional<double>& seconds, const std::vector<RetrievedMotion>& hits,
-                     double fps) {
-  double length = seconds.value_or(kDefaultSeconds);
-  if (!std::isfinite(length)) throw Error("the length in seconds is not a number");
+const Skeleton& Generator::skeleton() const { return impl_->skeleton; }
+
+int motion_frames(const std::optional<double>& seconds, const std::vector<RetrievedMotion>& hits,
+                  double fps) {
+  if (seconds) {
+    if (!(*seconds >= kLeastSeconds && *seconds <= kMostSeconds)) {
+      throw Error(fmt::format("a motion lasts {:g} to {:g} seconds, not {:g}", kLeastSeconds,
+                              kMostSeconds, *seconds));
+    }
+    return static_cast<int>(std::lround(*seconds * fps));
+  }
+  double length = kDefaultSeconds;
   std::vector<int> lengths;
   for (const auto& hit : hits) {
     if (hit.frames > 0) lengths.push_back(hit.frames);
   }
-  if (!seconds && !lengths.empty()) {
+  if (!lengths.empty()) {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
     std::nth_element(lengths.begin(), middle, lengths.end());
     length = *middle / fps;
   }
-  length = std::clamp(length, kLeastSeconds, kMostSeconds);
-  return std::clamp<int64_t>(std::llround(length * fps / 4), 1, kLongestTokenMap);
+  return static_cast<int>(std::lround(std::clamp(length, kLeastSeconds, kMostEstimated) * fps));
+}
+
+TokenCanvas Generator::canvas(int64_t frames) const {
+  const TokenizerConfig& config = impl_->tokenizer.config();
+  return {torch::zeros({frames, config.rows, config.levels}, torch::kLong),
+          torch::zeros({frames, config.rows}, torch::kBool)};
+}
+
+int Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last, const std::string& prompt,
+                    const std::vector<RetrievedMotion>& hits, const GenerateOptions& options,
+                    GenerationTimes* times) const {
+  const torch::NoGradGuard no_grad;
+  Stopwatch watch;
+  GenerationTimes spent;
+  std::vector<RetrievedMotion> used;
+  if (options.use_retrieval) {
+    const auto count = std::min(static_cast<int64_t>(hits.size()), max_hits());
+    used.assign(hits.begin(), hits.begin() + count);
+  }
+  const std::vector<TokenWindow> windows = plan_windows(canvas.known, first, last);
+  const Condition condition = impl_->condition(prompt, used);
+  spent.text = watch.lap();
+  for (size_t i = 0; i < windows.size(); ++i) {
+    const TokenWindow& window = windows[i];
+    const uint64_t seed = i == 0 ? options.seed : mix_seed(options.seed, i);
+    const KnownTokens known{canvas.tokens.slice(0, window.first, window.last),
+                            canvas.known.slice(0, window.first, window.last)};
+    const auto base =
+        sample_base(impl_->masked, condition, window.last - window.first, seed, options.sampling,
+                    KnownTokens{known.tokens.select(2, 0), known.known});
+    spent.base += watch.lap();
+    const auto tokens = impl_->residual ? sample_residual(impl_->residual, condition, base, seed,
+                                                          options.sampling, known)
+                                        : base.unsqueeze(2);
+    spent.residual += watch.lap();
+    canvas.tokens.slice(0, window.first, window.last).copy_(tokens);
+    canvas.known.slice(0, window.first, window.last).fill_(true);
+  }
+  if (times) {
+    times->text += spent.text;
+    times->base += spent.base;
+    times->residual += spent.residual;
+  }
+  return static_cast<int>(used.size());
+}
+
+Motion Generator::decode(const at::Tensor& tokens) const {
+  Motion motion = recover_motion(impl_->tokenizer.decode(tokens), impl_->skeleton);
+  smooth_over_time(motion, kDecodeSmoothing);
+  impose_bone_lengths(motion, impl_->skeleton);
+  return motion;
 }
 
 Generated Generator::generate(const std::string& prompt, const std::vector<RetrievedMotion>& hits,
                               const GenerateOptions& options) const {
-  const torch::NoGradGuard no_grad;
   Generated result;
+  const auto count =
+      options.use_retrieval ? std::min(static_cast<int64_t>(hits.size()), max_hits()) : int64_t{0};
+  const int frames =
+      motion_frames(options.seconds, {hits.begin(), hits.begin() + count}, impl_->skeleton.fps);
+  TokenCanvas map = canvas((frames + kFramesPerToken - 1) / kFramesPerToken);
+  result.hits_used = fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times);
+  result.tokens = map.tokens;
   Stopwatch watch;
-  std::vector<RetrievedMotion> used;
-  if (options.use_retrieval) {
-    used.assign(hits.begin(),
-                hits.begin() + std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(hits.size()),
-                                                        static_cast<std::ptrdiff_t>(max_hits())));
-  }
-  result.hits_used = static_cast<int>(used.size());
-  const int64_t frames = token_frames(options.seconds, used, impl_->skeleton.fps);
-  const Condition condition = impl_->condition(prompt, used);
-  result.times.text = watch.lap();
-
-  const auto base = sample_base(impl_->masked, condition, frames, options.seed, options.sampling);
-  result.times.base = watch.lap();
-  result.tokens = impl_->residual ? sample_residual(impl_->residual, condition, base, options.seed,
-                                                    options.sampling)
-                                  : base.unsqueeze(2);
-  result.times.residual = watch.lap();
-  const Features features = impl_->tokenizer.decode(result.tokens);
+  result.motion = slice(decode(result.tokens), 0, frames);
   result.times.decode = watch.lap();
-  result.motion = recover_motion(features, impl_->skeleton);
-  impose_bone_lengths(result.motion, impl_->skeleton);
   lift_to_floor(result.motion, impl_->skeleton);
   result.times.finish = watch.lap();
   return result;

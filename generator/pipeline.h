@@ -28,7 +28,8 @@ struct RetrievedMotion {
 };
 
 struct GenerateOptions {
-  /// 1 .. 9.8 s; default: the median length of the hits, 5 s without hits.
+  /// Exactly round(seconds x rate) frames, 1 to 600 s; more than 9.8 s are made
+  /// piece by piece. Default: the median length of the hits, 5 s without hits, at most 9.8 s.
   std::optional<double> seconds;
   uint64_t seed = 0;
   bool use_retrieval = true;  ///< false: the hits are not read at all
@@ -45,6 +46,12 @@ struct Generated {
   at::Tensor tokens;  ///< int64 [T, rows, levels]
   int hits_used = 0;
   GenerationTimes times;
+};
+
+/// A token map of any length that is filled piece by piece.
+struct TokenCanvas {
+  at::Tensor tokens;  ///< int64 [T, rows, levels]
+  at::Tensor known;   ///< bool [T, rows]; the other tokens mean nothing
 };
 
 /// A whole model: prompt and hits -> motion. Const functions may be called
@@ -65,8 +72,22 @@ class Generator {
   Generated generate(const std::string& prompt, const std::vector<RetrievedMotion>& hits,
                      const GenerateOptions& options = {}) const;
 
+  /// A map of `frames` token frames of which nothing is known.
+  TokenCanvas canvas(int64_t frames) const;
+  /// Samples the unknown cells of token frames [first, last) under one prompt; all
+  /// are known afterwards. Long stretches are cut as plan_windows() says. Of the
+  /// options `seconds` is not read. Returns how many hits were used. `times` is
+  /// added to. Throws Error for frames outside of the map, and as generate() does.
+  int fill(TokenCanvas& canvas, int64_t first, int64_t last, const std::string& prompt,
+           const std::vector<RetrievedMotion>& hits, const GenerateOptions& options,
+           GenerationTimes* times = nullptr) const;
+  /// Tokens of any length -> a motion of four frames each with the bone lengths
+  /// of the skeleton, smoothed by a Gaussian of 40 ms. It starts at the origin and faces +Z.
+  Motion decode(const at::Tensor& tokens) const;
+
   const Retriever& retriever() const;
   const Tokenizer& tokenizer() const;
+  const Skeleton& skeleton() const;
   int64_t max_hits() const;
   /// Of how many hits, the best ones, the poses are read.
   int64_t sequence_hits() const;
@@ -76,9 +97,10 @@ class Generator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Length in token frames (4 poses each): `seconds`, else the median of the
-/// known lengths of the hits, else 5 s; clamped to 1 .. 9.8 s.
-int64_t token_frames(const std::optional<double>& seconds, const std::vector<RetrievedMotion>& hits,
-                     double fps);
+/// Length in frames: round(seconds x fps), else the median of the known lengths
+/// of the hits, else 5 s, the latter two clamped to 1 .. 9.8 s. Throws Error for
+/// seconds that are no number from 1 to 600.
+int motion_frames(const std::optional<double>& seconds, const std::vector<RetrievedMotion>& hits,
+                  double fps);
 
 }  // namespace remomask

@@ -1,13 +1,14 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <filesystem>
 
 #include "base/error.h"
 #include "motion/motion_file.h"
 #include "text/caption.h"
 #include "tools/contact_sheet.h"
+#include "tools/generate_script.h"
 #include "tools/generation_options.h"
+#include "tools/output_path.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
@@ -15,26 +16,14 @@ namespace remomask {
 
 namespace {
 
-namespace fs = std::filesystem;
-
-/// The output of sample `i` of `count`: NAME.bvh, or NAME-1.bvh, NAME-2.bvh ...
-std::string sample_path(const std::string& output, int i, int count) {
-  if (count == 1) return output;
-  const fs::path path(output);
-  return (path.parent_path() /
-          fmt::format("{}-{}{}", path.stem().string(), i + 1, path.extension().string()))
-      .string();
-}
-
-/// Before minutes of work: can the result be stored at all?
-void require_writable_output(const std::string& output) {
-  const fs::path path(output);
-  if (path.extension() != ".bvh" && path.extension() != ".npy") {
-    throw Error("output \"" + output + "\": the format is chosen by the ending .bvh or .npy");
-  }
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder)) {
-    throw Error("output \"" + output + "\": the folder does not exist; create it first");
+void check_prompt_or_script(const std::string& prompt, const std::string& script,
+                            const GenerationOptions& generation, int count) {
+  if (script.empty()) return;
+  if (!prompt.empty()) throw Error("give a sentence or a --script, not both");
+  if (count != 1 || generation.generate.seconds) {
+    throw Error(
+        "--count and --seconds are for one sentence; a script says its seconds "
+        "line by line");
   }
 }
 
@@ -42,7 +31,7 @@ void require_writable_output(const std::string& output) {
 
 void register_generate(CLI::App& app, Program& program) {
   struct Options {
-    std::string prompt, output, sheet;
+    std::string prompt, script, output, sheet;
     FileOptions files;
     FilterOptions filter;
     GenerationOptions generation;
@@ -53,11 +42,22 @@ void register_generate(CLI::App& app, Program& program) {
   CLI::App* command =
       add_command(app, "generate", "a sentence in, a motion file out, with its evidence",
                   "remomask generate \"a person walks forward and waves\" -o motion.bvh");
-  command->add_option("prompt", options->prompt, "what the person does")->required();
+  const CLI::Option* prompt =
+      command->add_option("prompt", options->prompt, "what the person does");
+  command->add_option("--script", options->script,
+                      "several sentences in a row, instead of the prompt: a file with a line "
+                      "\"SECONDS  sentence\" each");
   command->add_option("-o,--output", options->output, "motion file (.bvh or .npy)")->required();
   command->add_option("--sheet", options->sheet, "also draw a contact sheet (.png)");
   command->add_option("--seconds", options->generation.generate.seconds,
-                      "length, 1 to 9.8; default: as the retrieved motions");
+                      "length, 1 to 600, kept to the frame (20 a second); default: see --length");
+  command
+      ->add_option("--length", options->generation.length,
+                   "without --seconds: the median of the retrieved motions (evidence), the "
+                   "likeliest length of motions like the sentence (likely), or one drawn by the "
+                   "seed (sample)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"evidence", "likely", "sample"}));
   command->add_option("--seed", options->seed, "same seed, same motion")->capture_default_str();
   command->add_option("-n,--count", options->count, "number of motions, seeds SEED, SEED+1, ...")
       ->capture_default_str()
@@ -66,9 +66,13 @@ void register_generate(CLI::App& app, Program& program) {
   options->files.add_database(*command);
   options->filter.add(*command);
   options->generation.add(*command);
-  command->callback([options, &program] {
+  command->callback([options, prompt, &program] {
+    if (prompt->count() == 0 && options->script.empty()) {
+      throw CLI::RequiredError("a sentence, or --script");
+    }
     require_writable_output(options->output);
-    normalise_prompt(options->prompt);
+    check_prompt_or_script(options->prompt, options->script, options->generation, options->count);
+    if (options->script.empty()) normalise_prompt(options->prompt);
     if (options->prompt.size() > kMostCaptionBytes) {
       program.warn(
           fmt::format("only the first {} characters of the prompt can be read", kMostCaptionBytes));
@@ -78,6 +82,10 @@ void register_generate(CLI::App& app, Program& program) {
     const GenerationWorkspace workspace(load_model(model_path), model_path, options->files,
                                         options->generation);
     const ClipFilter evidence_filter = options->filter.filter();
+    if (!options->script.empty()) {
+      return run_script(workspace, options->script, options->output, options->sheet, options->seed,
+                        evidence_filter, program);
+    }
     nlohmann::json results = nlohmann::json::array();
     std::vector<SheetRow> rows;
     for (int i = 0; i < options->count; ++i) {
@@ -96,12 +104,15 @@ void register_generate(CLI::App& app, Program& program) {
                         {"seed", std::to_string(seed)},
                         {"generator", workspace.identity()},
                         {"database", workspace.search().database().uuid()},
+                        {"candidates", made.candidates.dump()},
                         {"evidence", evidence.dump()}});
       results.push_back({{"file", path},
                          {"prompt", options->prompt},
                          {"seed", seed},
                          {"frames", made.generated.motion.frames},
                          {"generator", workspace.identity()},
+                         {"candidates", made.candidates},
+                         {"length", made.length},
                          {"seconds_of_work", seconds},
                          {"evidence", evidence}});
       rows.push_back({options->prompt, evidence_line(evidence), made.generated.motion});

@@ -2,9 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/hash.h"
+#include "base/random.h"
+#include "generator/length_estimate.h"
+#include "tools/candidate_list.h"
 
 namespace remomask {
+
+namespace {
+
+constexpr double kMostEvaluatedSeconds = 9.8;  // what the transformers see at once
+
+}  // namespace
 
 void GenerationOptions::add(CLI::App& command) {
   SamplingOptions& sampling = generate.sampling;
@@ -33,6 +44,12 @@ void GenerationOptions::add(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--no-retrieval", no_retrieval, "from the text alone");
+  command
+      .add_option("--best-of", best_of,
+                  "make so many candidates, keep the one that fits the sentence best and moves "
+                  "like a body")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100));
 }
 
 GenerationWorkspace::GenerationWorkspace(const std::map<std::string, ModelStage>& stages,
@@ -46,36 +63,81 @@ GenerationWorkspace::GenerationWorkspace(const std::map<std::string, ModelStage>
   const SamplingOptions& sampling = options.generate.sampling;
   identity_ = fmt::format(
       "model {} steps {} guidance {:g} temperature {:g} top {:g} corrections {} "
-      "residual guidance {:g} residual temperature {:g} retrieval {}",
+      "residual guidance {:g} residual temperature {:g} retrieval {} best of {} length {}",
       content_hash(digest), sampling.steps, sampling.guidance, sampling.temperature,
       sampling.top_share, sampling.correction_rounds, sampling.residual_guidance,
-      sampling.residual_temperature, options.no_retrieval ? "off" : "on");
+      sampling.residual_temperature, options.no_retrieval ? "off" : "on", options.best_of,
+      options.length);
+}
+
+GenerateOptions GenerationWorkspace::generate_options(uint64_t seed) const {
+  GenerateOptions result = options_.generate;
+  result.seed = seed;
+  result.use_retrieval = !options_.no_retrieval;
+  return result;
+}
+
+Evidence GenerationWorkspace::find_evidence(const std::string& sentence,
+                                            const ClipFilter& filter) const {
+  Evidence result;
+  const auto k = static_cast<int>(generator_.max_hits());
+  if (options_.no_retrieval || k == 0) return result;
+  result.hits = search_.search(sentence, k, filter);
+  for (const MotionHit& hit : result.hits) {
+    const auto vectors = search_.database().embedding(search_.retriever().hash(), hit.clip.id);
+    if (!vectors || vectors->text.empty()) continue;
+    RetrievedMotion motion{hit.clip.id,    vectors->motion, vectors->text,
+                           hit.similarity, hit.clip.frames, {}};
+    if (static_cast<int64_t>(result.motions.size()) < generator_.sequence_hits()) {
+      motion.poses = search_.database().motion(hit.clip.id);
+    }
+    result.motions.push_back(std::move(motion));
+  }
+  return result;
+}
+
+nlohmann::json GenerationWorkspace::choose_length(const std::string& prompt,
+                                                  const ClipFilter& filter,
+                                                  GenerateOptions& options) const {
+  const LengthRule rule = parse_length_rule(options_.length);
+  if (options.seconds) return nullptr;
+  if (rule == LengthRule::evidence) return {{"rule", options_.length}};
+  std::vector<LengthNeighbour> neighbours;
+  for (const MotionHit& hit : search_.search(prompt, kLengthNeighbours, filter)) {
+    neighbours.push_back({hit.similarity, hit.clip.frames});
+  }
+  const std::vector<double> distribution = length_distribution(neighbours);
+  options.seconds = estimate_seconds(distribution, rule, options.seed);
+  return {{"rule", options_.length},
+          {"neighbours", neighbours.size()},
+          {"likely_seconds", estimate_seconds(distribution, LengthRule::likely, 0)},
+          {"distribution", distribution}};
+}
+
+std::vector<uint64_t> candidate_seeds(uint64_t seed, int count) {
+  std::vector<uint64_t> seeds = {seed};
+  for (int i = 1; i < count; ++i) seeds.push_back(mix_seed(seed, static_cast<uint64_t>(i)));
+  return seeds;
 }
 
 EvidencedMotion GenerationWorkspace::generate(const std::string& prompt, uint64_t seed,
                                               const ClipFilter& evidence, int frames) const {
-  EvidencedMotion result;
-  std::vector<RetrievedMotion> retrieved;
-  GenerateOptions options = options_.generate;
-  options.seed = seed;
-  options.use_retrieval = !options_.no_retrieval;
-  if (frames > 0) options.seconds = frames / 20.0;
-  if (!options_.no_retrieval) {
-    const auto k = static_cast<int>(generator_.max_hits());
-    if (k > 0) result.hits = search_.search(prompt, k, evidence);
-    for (const MotionHit& hit : result.hits) {
-      const auto vectors = search_.database().embedding(search_.retriever().hash(), hit.clip.id);
-      if (!vectors || vectors->text.empty()) continue;
-      RetrievedMotion motion{hit.clip.id,    vectors->motion, vectors->text,
-                             hit.similarity, hit.clip.frames, {}};
-      if (static_cast<int64_t>(retrieved.size()) < generator_.sequence_hits()) {
-        motion.poses = search_.database().motion(hit.clip.id);
-      }
-      retrieved.push_back(std::move(motion));
-    }
+  const Evidence found = find_evidence(prompt, evidence);
+  CandidateList<EvidencedMotion> candidates(search_.retriever(), prompt);
+  for (const uint64_t number : candidate_seeds(seed, options_.best_of)) {
+    GenerateOptions options = generate_options(number);
+    if (frames > 0) options.seconds = std::min(frames / 20.0, kMostEvaluatedSeconds);
+    EvidencedMotion made;
+    made.seed = number;
+    made.length = choose_length(prompt, evidence, options);
+    made.generated = generator_.generate(prompt, found.motions, options);
+    made.hits = found.hits;
+    const Motion motion = made.generated.motion;
+    candidates.add(std::move(made), number, motion);
   }
-  result.generated = generator_.generate(prompt, retrieved, options);
-  return result;
+  EvidencedMotion best = candidates.take_best();
+  best.candidates = candidates.ranking();
+  return best;
 }
 
 }  // namespace remomask

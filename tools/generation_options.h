@@ -13,15 +13,29 @@ namespace remomask {
 struct GenerationOptions {
   GenerateOptions generate;
   bool no_retrieval = false;
+  int best_of = 1;                  ///< candidates a motion, see score_candidate()
+  std::string length = "evidence";  ///< see parse_length_rule(); only where no length is given
 
   void add(CLI::App& command);
+};
+
+/// What search found for a sentence, for people and for the generator.
+struct Evidence {
+  std::vector<MotionHit> hits;
+  std::vector<RetrievedMotion> motions;
 };
 
 /// A generated motion with the clips it was made from.
 struct EvidencedMotion {
   Generated generated;
   std::vector<MotionHit> hits;
+  uint64_t seed = 0;          ///< of the candidate that was chosen
+  nlohmann::json candidates;  ///< seeds and scores, the best first; empty for one candidate
+  nlohmann::json length;      ///< how the length was estimated; null where it was given
 };
+
+/// Seeds of `count` candidates; the first is `seed` itself.
+std::vector<uint64_t> candidate_seeds(uint64_t seed, int count);
 
 /// A whole model with the database that it retrieves from.
 class GenerationWorkspace {
@@ -30,16 +44,28 @@ class GenerationWorkspace {
                       const std::string& model_path, const FileOptions& files,
                       const GenerationOptions& options);
 
+  /// The motions that search finds for a sentence among the clips of the filter; none
+  /// with --no-retrieval.
+  Evidence find_evidence(const std::string& sentence, const ClipFilter& filter) const;
+
   /// `evidence` says which clips may be retrieved; `frames` 0: --seconds, or the
   /// length of the retrieved motions.
   EvidencedMotion generate(const std::string& prompt, uint64_t seed, const ClipFilter& evidence,
                            int frames = 0) const;
 
   const SearchWorkspace& search() const { return search_; }
+  const Generator& generator() const { return generator_; }
+  /// The options with a seed.
+  GenerateOptions generate_options(uint64_t seed) const;
+  int best_of() const { return options_.best_of; }
   /// Hash of the model and all settings that change the result.
   const std::string& identity() const { return identity_; }
 
  private:
+  /// Sets the seconds where nothing else gives them; says how.
+  nlohmann::json choose_length(const std::string& prompt, const ClipFilter& filter,
+                               GenerateOptions& options) const;
+
   SearchWorkspace search_;
   Generator generator_;
   GenerationOptions options_;

@@ -40,6 +40,7 @@ void register_index(CLI::App& app, Program& program);
 void register_search(CLI::App& app, Program& program);
 void register_train(CLI::App& app, Program& program);
 void register_generate(CLI::App& app, Program& program);
+void register_edit(CLI::App& app, Program& program);
 void register_evaluate(CLI::App& app, Program& program);
 void register_convert(CLI::App& app, Program& program);
 void register_sheet(CLI::App& app, Program& program);

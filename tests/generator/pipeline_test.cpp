@@ -6,68 +6,12 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "generator/generator_data.h"
 #include "generator/presets.h"
-#include "generator/tokenizer_training.h"
-#include "generator/transformer_training.h"
 #include "nn/threads.h"
-#include "retriever/training.h"
-#include "tokenizer_test_tools.h"
+#include "tests/generator/tiny_model.h"
 
 namespace remomask {
 namespace {
-
-std::vector<TrainingClip> captioned_clips() {
-  std::vector<TrainingClip> clips = swinging_clips({40, 48, 60, 44, 52, 72, 41, 64});
-  const std::vector<std::string> texts = {"a person walks", "someone runs in a circle",
-                                          "a man waves", "a person jumps and turns"};
-  for (size_t i = 0; i < clips.size(); ++i) {
-    clips[i].split = "train";
-    clips[i].group = static_cast<int>(i / 2);
-    clips[i].captions = {texts[i % 4], texts[(i + 1) % 4] + " slowly"};
-  }
-  return clips;
-}
-
-/// All four networks of preset tiny after two steps each, made once.
-struct TinyModel {
-  std::map<std::string, ModelStage> stages;
-  GeneratorData data;
-
-  TinyModel() {
-    const auto clips = captioned_clips();
-    const ModelConfig config = model_preset("tiny");
-    const auto trainer = [](const std::string& name) {
-      TrainerOptions options;
-      options.steps = 2;
-      options.stage_name = name;
-      return options;
-    };
-    RetrieverTrainingOptions retriever_options("tiny");
-    retriever_options.trainer = trainer("retriever");
-    retriever_options.batch = 4;
-    stages["retriever"] =
-        train_retriever(clips, {}, std::nullopt, config.retriever, retriever_options, {});
-    TokenizerTrainingOptions tokenizer_options;
-    tokenizer_options.trainer = trainer("tokenizer");
-    tokenizer_options.window = 32;
-    tokenizer_options.batch_frames = 256;
-    stages["tokenizer"] = train_tokenizer(clips, clips, config.tokenizer, tokenizer_options, {});
-    data = prepare_generator_data(clips, {clips[0]}, Tokenizer(stages["tokenizer"]),
-                                  Retriever(stages["retriever"]), {});
-    TransformerTrainingOptions options;
-    options.batch = 4;
-    options.trainer = trainer("masked");
-    stages["masked"] = train_masked(config.masked, data, options, {});
-    options.trainer = trainer("residual");
-    stages["residual"] = train_residual(config.residual, data, options, {});
-  }
-};
-
-TinyModel& tiny_model() {
-  static TinyModel model;
-  return model;
-}
 
 std::vector<RetrievedMotion> two_hits(const Generator& generator) {
   const GeneratorData& data = tiny_model().data;
@@ -160,17 +104,33 @@ TEST(Pipeline, WithoutRetrievalHitsAreNotRead) {
   EXPECT_EQ(with.motion.positions, without.motion.positions);
 }
 
-TEST(Pipeline, LengthsAreChosenAndClamped) {
+TEST(Pipeline, LengthsAreExactOrEstimated) {
   std::vector<RetrievedMotion> hits(3);
-  EXPECT_EQ(token_frames(std::nullopt, hits, 20), 25);
+  EXPECT_EQ(motion_frames(std::nullopt, hits, 20), 100);
   hits[0].frames = 40;
   hits[1].frames = 120;
-  hits[2].frames = 80;
-  EXPECT_EQ(token_frames(std::nullopt, hits, 20), 20);
-  EXPECT_EQ(token_frames(2.0, hits, 20), 10);
-  EXPECT_EQ(token_frames(0.1, hits, 20), 5);
-  EXPECT_EQ(token_frames(100.0, hits, 20), 49);
-  EXPECT_THROW(token_frames(std::nan(""), hits, 20), Error);
+  hits[2].frames = 81;
+  EXPECT_EQ(motion_frames(std::nullopt, hits, 20), 81);
+  EXPECT_EQ(motion_frames(2.0, hits, 20), 40);
+  EXPECT_EQ(motion_frames(3.13, hits, 20), 63);
+  EXPECT_EQ(motion_frames(100.0, hits, 20), 2000);
+  for (const double wrong : {0.1, 601.0, -2.0, std::nan("")}) {
+    EXPECT_THROW(motion_frames(wrong, hits, 20), Error);
+  }
+  hits.resize(1);
+  hits[0].frames = 300;
+  EXPECT_EQ(motion_frames(std::nullopt, hits, 20), 196);
+}
+
+TEST(Pipeline, MakesEveryLengthExactly) {
+  const Generator generator(tiny_model().stages);
+  GenerateOptions options;
+  for (const double seconds : {1.0, 1.05, 2.1, 3.15, 9.8, 9.85, 25.3}) {
+    options.seconds = seconds;
+    const Generated made = generator.generate("a person walks", {}, options);
+    EXPECT_EQ(made.motion.frames, std::lround(seconds * 20)) << seconds;
+    EXPECT_EQ(made.tokens.size(0), (made.motion.frames + 3) / 4) << seconds;
+  }
 }
 
 TEST(Pipeline, WrongInputsAreErrors) {

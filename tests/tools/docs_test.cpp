@@ -1,4 +1,4 @@
-// Runs what docs/search.md shows: a page whose commands have gone stale fails.
+// Runs what pages in docs/ show: a page whose commands have gone stale fails.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kPage = REMOMASK_SOURCE_DIR "/docs/search.md";
+const std::string kDocs = REMOMASK_SOURCE_DIR "/docs/";
+const std::string kPage = kDocs + "search.md";
 const std::string kExample = REMOMASK_SOURCE_DIR "/examples/search_library.cpp";
 const std::string kModels = REMOMASK_SOURCE_DIR "/models";
 
@@ -53,23 +54,30 @@ int run_shell(const std::string& script, const std::string& folder, std::string&
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-TEST(SearchPage, EveryCommandRuns) {
+class DocsPage : public ::testing::TestWithParam<const char*> {
+ protected:
+  std::string page() const { return kDocs + GetParam(); }
+};
+INSTANTIATE_TEST_SUITE_P(Pages, DocsPage, ::testing::Values("search.md", "editing.md"));
+
+TEST_P(DocsPage, EveryCommandRuns) {
   const ScratchFolder scratch;
   int run = 0;
-  for (const Block& block : code_blocks(read_file(kPage))) {
+  for (const Block& block : code_blocks(read_file(page()))) {
     if (block.language != "sh") continue;
     std::string log;
-    ASSERT_EQ(run_shell(block.text, scratch.path(""), log), 0) << kPage << ":" << block.line << "\n"
-                                                               << log;
+    ASSERT_EQ(run_shell(block.text, scratch.path(""), log), 0)
+        << page() << ":" << block.line << "\n"
+        << log;
     ++run;
   }
   EXPECT_GT(run, 5);
 }
 
-TEST(SearchPage, KnowsNoOtherKindsOfBlocks) {
-  for (const Block& block : code_blocks(read_file(kPage))) {
+TEST_P(DocsPage, KnowsNoOtherKindsOfBlocks) {
+  for (const Block& block : code_blocks(read_file(page()))) {
     EXPECT_TRUE(block.language == "sh" || block.language == "cpp")
-        << kPage << ":" << block.line << ": blocks in '" << block.language << "' are not tested";
+        << page() << ":" << block.line << ": blocks in '" << block.language << "' are not tested";
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 const std::vector<std::string> kCommands = {"generate",   "search",   "import",  "index",
                                             "train",      "evaluate", "convert", "sheet",
-                                            "procedural", "info",     "db"};
+                                            "procedural", "info",     "db",      "edit"};
 
 TEST(UsageTest, HelpNamesEveryCommandAndEachHasAnExample) {
   const ProgramResult help = run_program({"--help"});

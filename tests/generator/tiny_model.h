@@ -1,0 +1,68 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "generator/generator_data.h"
+#include "generator/presets.h"
+#include "generator/tokenizer_training.h"
+#include "generator/transformer_training.h"
+#include "retriever/training.h"
+#include "tests/generator/tokenizer_test_tools.h"
+
+namespace remomask {
+
+inline std::vector<TrainingClip> captioned_clips() {
+  std::vector<TrainingClip> clips = swinging_clips({40, 48, 60, 44, 52, 72, 41, 64});
+  const std::vector<std::string> texts = {"a person walks", "someone runs in a circle",
+                                          "a man waves", "a person jumps and turns"};
+  for (size_t i = 0; i < clips.size(); ++i) {
+    clips[i].split = "train";
+    clips[i].group = static_cast<int>(i / 2);
+    clips[i].captions = {texts[i % 4], texts[(i + 1) % 4] + " slowly"};
+  }
+  return clips;
+}
+
+/// All four networks of preset tiny after two steps each, made once.
+struct TinyModel {
+  std::map<std::string, ModelStage> stages;
+  GeneratorData data;
+
+  TinyModel() {
+    const auto clips = captioned_clips();
+    const ModelConfig config = model_preset("tiny");
+    const auto trainer = [](const std::string& name) {
+      TrainerOptions options;
+      options.steps = 2;
+      options.stage_name = name;
+      return options;
+    };
+    RetrieverTrainingOptions retriever_options("tiny");
+    retriever_options.trainer = trainer("retriever");
+    retriever_options.batch = 4;
+    stages["retriever"] =
+        train_retriever(clips, {}, std::nullopt, config.retriever, retriever_options, {});
+    TokenizerTrainingOptions tokenizer_options;
+    tokenizer_options.trainer = trainer("tokenizer");
+    tokenizer_options.window = 32;
+    tokenizer_options.batch_frames = 256;
+    stages["tokenizer"] = train_tokenizer(clips, clips, config.tokenizer, tokenizer_options, {});
+    data = prepare_generator_data(clips, {clips[0]}, Tokenizer(stages["tokenizer"]),
+                                  Retriever(stages["retriever"]), {});
+    TransformerTrainingOptions options;
+    options.batch = 4;
+    options.trainer = trainer("masked");
+    stages["masked"] = train_masked(config.masked, data, options, {});
+    options.trainer = trainer("residual");
+    stages["residual"] = train_residual(config.residual, data, options, {});
+  }
+};
+
+inline TinyModel& tiny_model() {
+  static TinyModel model;
+  return model;
+}
+
+}  // namespace remomask

@@ -1,0 +1,162 @@
+#include "tools/generate_script.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "evaluation/candidate_ranking.h"
+#include "evaluation/physical.h"
+#include "evaluation/seams.h"
+#include "generator/script.h"
+#include "motion/motion_file.h"
+#include "text/caption.h"
+#include "tools/contact_sheet.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr int kLongestClip = 200;
+
+struct FoundSegments {
+  std::vector<ScriptSegment> segments;
+  std::vector<nlohmann::json> evidence;  ///< of each
+};
+
+FoundSegments find_segments(const GenerationWorkspace& workspace,
+                            const std::vector<ScriptLine>& lines, const std::string& path,
+                            const ClipFilter& filter) {
+  FoundSegments found;
+  for (const ScriptLine& line : lines) {
+    std::string sentence = line.sentence;
+    try {
+      normalise_prompt(sentence);
+    } catch (const Error& error) {
+      throw FileError(path, line.line, error.what());
+    }
+    Evidence evidence = workspace.find_evidence(sentence, filter);
+    found.evidence.push_back(hits_json(evidence.hits));
+    found.segments.push_back({sentence, std::move(evidence.motions), line.seconds});
+  }
+  return found;
+}
+
+/// The score of the segment alone, less what its seam is rougher than allowed.
+double judge_segment(const GenerationWorkspace& workspace, const std::string& sentence,
+                     const Motion& piece, int seam) {
+  const Retriever& retriever = workspace.search().retriever();
+  const at::Tensor query = retriever.encode_text({sentence}).query.contiguous();
+  const std::vector<float> vector(query.data_ptr<float>(), query.data_ptr<float>() + query.numel());
+  const Skeleton& skeleton = humanml_skeleton();
+  // The retriever reads as much as a clip has.
+  const int last = std::min(piece.frames, seam + kLongestClip);
+  const CandidateScore score =
+      score_candidate(retriever, vector, slice(piece, seam, last), skeleton);
+  return score.score - jerk_penalty(jerk_at_seam(jerk_over_time(piece, skeleton), seam));
+}
+
+/// What can be measured of a long motion: its seams against real clips, its
+/// bones and its floor.
+nlohmann::json measure_script(const ScriptMotion& made, const FoundSegments& found,
+                              const Database& database) {
+  const Skeleton& skeleton = humanml_skeleton();
+  const std::vector<double> jerk = jerk_over_time(made.motion, skeleton);
+  const std::vector<double> lowest = lowest_foot_over_time(made.motion, skeleton);
+  const PhysicalMetrics physical = measure_physical(made.motion, skeleton);
+  nlohmann::json segments = nlohmann::json::array();
+  double seam_sum = 0, seam_most = 0;
+  for (size_t i = 0; i < made.segments.size(); ++i) {
+    const MadeSegment& segment = made.segments[i];
+    const auto begin = lowest.begin() + segment.first, end = lowest.begin() + segment.last;
+    nlohmann::json entry = {{"sentence", found.segments[i].sentence},
+                            {"first", segment.first},
+                            {"last", segment.last},
+                            {"seed", segment.seed},
+                            {"score", segment.score},
+                            {"lowest_foot", *std::min_element(begin, end)},
+                            {"highest_lowest_foot", *std::max_element(begin, end)},
+                            {"evidence", found.evidence[i]}};
+    if (i > 0) {
+      const double at_seam = jerk_at_seam(jerk, segment.first);
+      entry["jerk_at_seam"] = at_seam;
+      seam_sum += at_seam;
+      seam_most = std::max(seam_most, at_seam);
+    }
+    segments.push_back(std::move(entry));
+  }
+  const size_t seams = made.segments.size() - 1;
+  const double real = jerk_of_database(database, skeleton);
+  nlohmann::json report = {{"segments", segments}, {"physical", physical}, {"jerk_of_real", real}};
+  if (seams > 0) {
+    const double mean = seam_sum / static_cast<double>(seams);
+    report["jerk_at_seams"] = mean;
+    report["jerk_at_worst_seam"] = seam_most;
+    if (real > 0) report["seams_to_real"] = mean / real;
+  }
+  return report;
+}
+
+void draw_segments(const ScriptMotion& made, const FoundSegments& found, const std::string& path) {
+  std::vector<SheetRow> rows;
+  for (size_t i = 0; i < made.segments.size(); ++i) {
+    rows.push_back({found.segments[i].sentence, evidence_line(found.evidence[i]),
+                    slice(made.motion, made.segments[i].first, made.segments[i].last)});
+  }
+  write_contact_sheet(path, rows);
+}
+
+}  // namespace
+
+void run_script(const GenerationWorkspace& workspace, const std::string& script_path,
+                const std::string& output, const std::string& sheet, uint64_t seed,
+                const ClipFilter& evidence, Program& program) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string text = read_file(script_path);
+  const FoundSegments found =
+      find_segments(workspace, parse_script(text, script_path), script_path, evidence);
+  ScriptOptions options;
+  options.generate = workspace.generate_options(seed);
+  options.candidates = workspace.best_of();
+  options.judge = [&](const std::string& sentence, const Motion& piece, int seam) {
+    return judge_segment(workspace, sentence, piece, seam);
+  };
+  const ScriptMotion made =
+      generate_script(workspace.generator(), found.segments, options, program.monitor());
+  program.finish_progress();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  nlohmann::json report = measure_script(made, found, workspace.search().database());
+  report["file"] = output;
+  report["script"] = script_path;
+  report["seed"] = seed;
+  report["frames"] = made.motion.frames;
+  report["generator"] = workspace.identity();
+  report["seconds_of_work"] = seconds;
+  save_motion_file(output, made.motion,
+                   {{"prompt", text},
+                    {"script", script_path},
+                    {"segments", report["segments"].dump()},
+                    {"seed", std::to_string(seed)},
+                    {"generator", workspace.identity()},
+                    {"database", workspace.search().database().uuid()},
+                    {"evidence", nlohmann::json::array().dump()}});
+  if (!sheet.empty()) draw_segments(made, found, sheet);
+  if (program.json) return program.print_json(report);
+  fmt::print("{}: {} frames ({:.1f} s of motion) of {} sentences in {:.2f} s, seed {}\n", output,
+             made.motion.frames, made.motion.frames / 20.0, made.segments.size(), seconds, seed);
+  for (const auto& segment : report["segments"]) {
+    fmt::print("  {:6.2f} s  {}\n", segment["first"].get<int>() / 20.0,
+               segment["sentence"].get<std::string>());
+  }
+  if (report.contains("seams_to_real")) {
+    fmt::print("jerk at the seams: {:.2f} times that of the database's clips\n",
+               report["seams_to_real"].get<double>());
+  }
+  if (!sheet.empty()) fmt::print("{}: contact sheet\n", sheet);
+}
+
+}  // namespace remomask

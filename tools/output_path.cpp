@@ -1,0 +1,32 @@
+#include "tools/output_path.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+
+namespace remomask {
+
+namespace fs = std::filesystem;
+
+void require_writable_output(const std::string& output) {
+  const fs::path path(output);
+  if (path.extension() != ".bvh" && path.extension() != ".npy") {
+    throw Error("output \"" + output + "\": the format is chosen by the ending .bvh or .npy");
+  }
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder)) {
+    throw Error("output \"" + output + "\": the folder does not exist; create it first");
+  }
+}
+
+std::string sample_path(const std::string& output, int i, int count) {
+  if (count == 1) return output;
+  const fs::path path(output);
+  return (path.parent_path() /
+          fmt::format("{}-{}{}", path.stem().string(), i + 1, path.extension().string()))
+      .string();
+}
+
+}  // namespace remomask
