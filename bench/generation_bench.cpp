@@ -16,8 +16,8 @@
 #include "bench/model_work.h"
 #include "bench/random_model.h"
 #include "generator/pipeline.h"
-#include "nn/threads.h"
 #include "nn/model_file.h"
+#include "nn/threads.h"
 
 namespace remomask {
 namespace {
@@ -73,14 +73,14 @@ struct GenerationWork {
 
 GenerationWork generation_work(const BenchModel& model, const Generator& generator,
                                const SamplingOptions& options) {
-  const auto masked = model.stages.at("masked").config.get<MaskedConfig>();
+  const auto masked = masked_config(model.stages.at("masked").config);
   const TokenizerConfig& tokenizer = generator.tokenizer().config();
   const ConditionSize condition{generator.retriever().encode_text({kPrompt}).states.size(1),
                                 generator.max_hits()};
   GenerationWork work;
   work.base = sample_base_flops(masked, options, condition, kLongestTokenMap);
   if (tokenizer.levels > 1) {
-    work.residual = sample_residual_flops(model.stages.at("residual").config.get<ResidualConfig>(),
+    work.residual = sample_residual_flops(residual_config(model.stages.at("residual").config),
                                           options, condition, kLongestTokenMap);
   }
   work.decode = decode_flops(tokenizer, kLongestTokenMap);

@@ -21,7 +21,8 @@ SstaConfig masked_stack_config(const MaskedConfig& config) {
           config.text_width,
           config.embedding_width,
           config.max_hits > 0,
-          config.sequence_hits > 0};
+          config.sequence_hits > 0,
+          config.attention};
 }
 
 MaskedConfig with_possible_hits(MaskedConfig config) {
@@ -35,7 +36,8 @@ MaskedTransformerImpl::MaskedTransformerImpl(const MaskedConfig& chosen)
     : config_(with_possible_hits(chosen)),
       token_table_(register_module(
           "token_table", torch::nn::Embedding(config_.rows * (config_.codes + 1), config_.width))),
-      stack_(register_module("stack", SstaStack(masked_stack_config(config_), config_.layers))),
+      stack_(register_module("stack",
+                             make_attention_stack(masked_stack_config(config_), config_.layers))),
       head_weight_(register_parameter(
           "head_weight", torch::randn({config_.rows, config_.width, config_.codes}) * 0.02)),
       head_bias_(register_parameter("head_bias", torch::zeros({config_.rows, 1, config_.codes}))) {
@@ -95,11 +97,18 @@ at::Tensor MaskedTransformerImpl::forward(const at::Tensor& tokens,
                                           std::vector<at::Tensor>* after_block) {
   const int64_t batch = tokens.size(0), frames = tokens.size(1), rows = config_.rows;
   auto x = embed(tokens).flatten(1, 2);
-  x = stack_(x, condition, frame_mask, after_block);
+  x = stack_->forward(x, condition, frame_mask, after_block);
   const auto by_row = x.reshape({batch * frames, rows, config_.width}).transpose(0, 1);
   return torch::baddbmm(head_bias_, by_row, head_weight_)
       .transpose(0, 1)
       .reshape({batch, frames * rows, config_.codes});
+}
+
+MaskedConfig masked_config(nlohmann::json stage_config) {
+  stage_config.emplace("sequence_hits", 0);
+  stage_config.emplace("attention", "ssta");
+  stage_config.emplace("drops_conditions", true);
+  return stage_config.get<MaskedConfig>();
 }
 
 ModelStage masked_stage(const MaskedTransformer& model) {
@@ -110,7 +119,7 @@ MaskedTransformer load_masked(const ModelStage& stage) {
   if (stage.kind != "masked") {
     throw Error("this stage is a " + stage.kind + ", not a masked transformer");
   }
-  MaskedTransformer model(stage.config.get<MaskedConfig>());
+  MaskedTransformer model(masked_config(stage.config));
   load_module_tensors(*model, stage.tensors, "masked transformer");
   model->eval();
   return model;

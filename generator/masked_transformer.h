@@ -5,6 +5,7 @@
 #include <torch/nn/modules/linear.h>
 #include <torch/nn/modules/normalization.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -24,15 +25,18 @@ struct MaskedConfig {
   int64_t layers = 4;
   int64_t hidden = 512;
   double dropout = 0.1;
-  int64_t text_width = 256;       ///< of the text tower's token states
-  int64_t embedding_width = 256;  ///< of the shared text-motion space
-  int64_t max_hits = 4;           ///< most retrieved motions; 0: no retrieval path at all
-  int64_t sequence_hits = 0;      ///< the best so many are also read as token maps
+  int64_t text_width = 256;        ///< of the text tower's token states
+  int64_t embedding_width = 256;   ///< of the shared text-motion space
+  int64_t max_hits = 4;            ///< most retrieved motions; 0: no retrieval path at all
+  int64_t sequence_hits = 0;       ///< the best so many are also read as token maps
+  std::string attention = "ssta";  ///< or "joined": ordinary attention over [t; R; z]
+  /// Conditions were dropped now and then in training (RAG-CFG); without that
+  /// there is nothing that guidance could compare with.
+  bool drops_conditions = true;
 };
-// Files of before sequence_hits do not have it.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(MaskedConfig, preset, rows, codes, width, heads,
-                                                layers, hidden, dropout, text_width,
-                                                embedding_width, max_hits, sequence_hits)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MaskedConfig, preset, rows, codes, width, heads, layers, hidden,
+                                   dropout, text_width, embedding_width, max_hits, sequence_hits,
+                                   attention, drops_conditions)
 
 /// Predicts the base tokens of a map [T, rows] under a condition (ReMoMask 3.3).
 /// Codebooks are per row, hence so are token table and output head.
@@ -61,10 +65,13 @@ class MaskedTransformerImpl : public torch::nn::Module {
   torch::nn::Embedding token_table_;
   torch::nn::Linear hit_pair_{nullptr}, hit_similarity_{nullptr};
   torch::nn::LayerNorm hit_norm_{nullptr};
-  SstaStack stack_;
+  std::shared_ptr<AttentionStackImpl> stack_;
   at::Tensor head_weight_, head_bias_;
 };
 TORCH_MODULE(MaskedTransformer);
+
+/// The config of a stage; what files of earlier versions do not say has its default.
+MaskedConfig masked_config(nlohmann::json stage_config);
 
 /// Model <-> stage of a model file (kind "masked").
 ModelStage masked_stage(const MaskedTransformer& model);

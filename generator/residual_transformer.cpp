@@ -11,8 +11,9 @@ namespace remomask {
 namespace {
 
 SstaConfig residual_stack_config(const ResidualConfig& config) {
-  return {config.rows,    config.width,      config.heads,           config.hidden,
-          config.dropout, config.text_width, config.embedding_width, /*retrieval=*/false};
+  return {config.rows,          config.width,      config.heads,           config.hidden,
+          config.dropout,       config.text_width, config.embedding_width, /*retrieval=*/false,
+          /*hit_states=*/false, config.attention};
 }
 
 }  // namespace
@@ -23,7 +24,8 @@ ResidualTransformerImpl::ResidualTransformerImpl(const ResidualConfig& config)
           "tables", torch::randn({config.levels, config.rows, config.codes, config.width}) * 0.02)),
       level_table_(
           register_module("level_table", torch::nn::Embedding(config.levels, config.width))),
-      stack_(register_module("stack", SstaStack(residual_stack_config(config), config.layers))) {
+      stack_(register_module("stack",
+                             make_attention_stack(residual_stack_config(config), config.layers))) {
   torch::NoGradGuard no_grad;
   level_table_->weight.normal_(0, 0.02);
   stack_->initialise();
@@ -48,7 +50,8 @@ at::Tensor ResidualTransformerImpl::forward(const at::Tensor& tokens, const at::
     const auto embedded = torch::embedding(tables_[below].reshape({rows * codes, width}), index);
     x = x + embedded * (device_level > below).to(embedded.dtype()).reshape({batch, 1, 1});
   }
-  x = stack_(x * std::sqrt(static_cast<double>(width)), condition, frame_mask, after_block);
+  x = stack_->forward(x * std::sqrt(static_cast<double>(width)), condition, frame_mask,
+                      after_block);
 
   // Samples of one level go through its projection together.
   std::vector<at::Tensor> parts, places;
@@ -66,6 +69,11 @@ at::Tensor ResidualTransformerImpl::forward(const at::Tensor& tokens, const at::
   return torch::cat(parts, 0).index_select(0, torch::argsort(torch::cat(places, 0)));
 }
 
+ResidualConfig residual_config(nlohmann::json stage_config) {
+  stage_config.emplace("attention", "ssta");
+  return stage_config.get<ResidualConfig>();
+}
+
 ModelStage residual_stage(const ResidualTransformer& model) {
   return {"residual", nlohmann::json(model->config()), module_tensors(*model)};
 }
@@ -74,7 +82,7 @@ ResidualTransformer load_residual(const ModelStage& stage) {
   if (stage.kind != "residual") {
     throw Error("this stage is a " + stage.kind + ", not a residual transformer");
   }
-  ResidualTransformer model(stage.config.get<ResidualConfig>());
+  ResidualTransformer model(residual_config(stage.config));
   load_module_tensors(*model, stage.tensors, "residual transformer");
   model->eval();
   return model;

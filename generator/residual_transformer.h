@@ -3,6 +3,7 @@
 #include <torch/nn/module.h>
 #include <torch/nn/modules/embedding.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -25,9 +26,10 @@ struct ResidualConfig {
   double dropout = 0.1;
   int64_t text_width = 256;
   int64_t embedding_width = 256;
+  std::string attention = "ssta";  ///< or "joined": ordinary attention over [t; z]
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ResidualConfig, preset, rows, levels, codes, width, heads,
-                                   layers, hidden, dropout, text_width, embedding_width)
+                                   layers, hidden, dropout, text_width, embedding_width, attention)
 
 /// Predicts the tokens of residual level l from the levels below it (MoMask
 /// 3.3), with STA: text is the only condition. One table [levels, rows, codes,
@@ -52,9 +54,12 @@ class ResidualTransformerImpl : public torch::nn::Module {
   ResidualConfig config_;
   at::Tensor tables_;
   torch::nn::Embedding level_table_;
-  SstaStack stack_;
+  std::shared_ptr<AttentionStackImpl> stack_;
 };
 TORCH_MODULE(ResidualTransformer);
+
+/// The config of a stage; what files of earlier versions do not say has its default.
+ResidualConfig residual_config(nlohmann::json stage_config);
 
 /// Model <-> stage of a model file (kind "residual").
 ModelStage residual_stage(const ResidualTransformer& model);

@@ -146,6 +146,11 @@ at::Tensor sample_base(MaskedTransformer model, const Condition& condition, int6
   const torch::NoGradGuard no_grad;
   model->eval();
   const MaskedConfig& config = model->config();
+  if (!config.drops_conditions && options.guidance != 1) {
+    throw Error(
+        "this model was trained without dropped conditions, so that there is nothing to guide it "
+        "away from; use guidance 1");
+  }
   const int64_t count = frames * config.rows;
   std::vector<int64_t> cells = free_cells(known, count);
   BaseSampler sampler{model,

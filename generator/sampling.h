@@ -36,6 +36,8 @@ struct KnownTokens {
 /// (MaskGIT; MoMask 3.2). `condition` holds one sample. Each sample is a pass
 /// of two (with and without condition) at its own length and draws from
 /// (seed, pass, cell, code): the result does not depend on other samples.
+/// Throws Error for guidance with a model that was trained without dropped
+/// conditions.
 at::Tensor sample_base(MaskedTransformer model, const Condition& condition, int64_t frames,
                        uint64_t seed, const SamplingOptions& options,
                        const std::optional<KnownTokens>& known = std::nullopt);

@@ -17,13 +17,28 @@ namespace nn = torch::nn;
 
 namespace {
 
-constexpr int64_t kTextKinds = 3, kHitStateKind = 3;
 // Far below any real logit, yet finite: softmax gives exactly 0 and gradients stay finite.
 constexpr double kHiddenKey = -1e4;
 
 nn::LayerNorm layer_norm(int64_t width) { return nn::LayerNorm(nn::LayerNormOptions({width})); }
 
 }  // namespace
+
+int64_t condition_kinds(const SstaConfig& config) {
+  return config.hit_states ? kConditionKinds : kConditionKinds - 1;
+}
+
+void check_attention_sizes(const SstaConfig& config) {
+  if (config.width % (2 * config.heads) != 0 || config.width % 4 != 0) {
+    throw Error("transformer: width " + std::to_string(config.width) +
+                " must be a multiple of 4 and of twice the number of heads (" +
+                std::to_string(config.heads) + ")");
+  }
+  if (config.attention != "ssta" && config.attention != "joined") {
+    throw Error("transformer: there is no attention \"" + config.attention +
+                "\"; use ssta or joined");
+  }
+}
 
 ConditionEncoderImpl::ConditionEncoderImpl(const SstaConfig& config)
     : config_(config),
@@ -34,6 +49,8 @@ ConditionEncoderImpl::ConditionEncoderImpl(const SstaConfig& config)
   if (!config.retrieval) return;
   null_hit_key_ =
       register_parameter("null_hit_key", torch::randn({2 * config.embedding_width + 1}) * 0.5);
+  // Joined rows are key and value at once.
+  if (config.attention == "joined") return;
   null_hit_value_ =
       register_parameter("null_hit_value", torch::randn({config.embedding_width}) * 0.5);
 }
@@ -61,9 +78,11 @@ ConditionRows ConditionEncoderImpl::forward(const Condition& condition,
                     condition.hit_similarity.unsqueeze(2)},
                    2);
     rows.hit_keys = torch::cat({keys, null_hit_key_.expand({batch, 1, null_hit_key_.size(0)})}, 1);
-    rows.hit_values = torch::cat({condition.hit_motion * unit_scale,
-                                  null_hit_value_.expand({batch, 1, null_hit_value_.size(0)})},
-                                 1);
+    if (null_hit_value_.defined()) {
+      rows.hit_values = torch::cat({condition.hit_motion * unit_scale,
+                                    null_hit_value_.expand({batch, 1, null_hit_value_.size(0)})},
+                                   1);
+    }
     const auto hits = condition.hit_mask.logical_and(condition.use_retrieval.unsqueeze(1));
     visible.push_back(hits);
     visible.push_back(hits.any(1, /*keepdim=*/true).logical_not());
@@ -72,7 +91,7 @@ ConditionRows ConditionEncoderImpl::forward(const Condition& condition,
   if (config_.hit_states && hit_states.states.defined()) {
     rows.hit_states = hit_states.states;
     visible.push_back(hit_states.visible.logical_and(condition.use_retrieval.unsqueeze(1)));
-    kinds.push_back(torch::full({hit_states.states.size(1)}, kHitStateKind, long_options));
+    kinds.push_back(torch::full({hit_states.states.size(1)}, kConditionKinds - 1, long_options));
   }
   rows.visible = torch::cat(visible, 1);
   rows.kinds = torch::cat(kinds, 0);
@@ -98,8 +117,8 @@ SstaImpl::SstaImpl(const SstaConfig& config)
       position_bias_(register_module(
           "position_bias",
           nn::Embedding((2 * kLongestTokenMap - 1) * config.rows * config.rows, config.heads))),
-      kind_bias_(register_module(
-          "kind_bias", nn::Embedding(kTextKinds + (config.hit_states ? 1 : 0), config.heads))) {
+      kind_bias_(
+          register_module("kind_bias", nn::Embedding(condition_kinds(config), config.heads))) {
   if (config.hit_states) {
     hit_state_key_ = register_module("hit_state_key", nn::Linear(config.width, config.width));
     hit_state_value_ = register_module("hit_state_value", nn::Linear(config.width, config.width));
@@ -173,11 +192,7 @@ SstaStackImpl::SstaStackImpl(const SstaConfig& config, int64_t layers)
     : config_(config),
       condition_encoder_(register_module("condition", ConditionEncoder(config))),
       final_norm_(register_module("final_norm", layer_norm(config.width))) {
-  if (config.width % (2 * config.heads) != 0 || config.width % 4 != 0) {
-    throw Error("transformer: width " + std::to_string(config.width) +
-                " must be a multiple of 4 and of twice the number of heads (" +
-                std::to_string(config.heads) + ")");
-  }
+  check_attention_sizes(config);
   for (int64_t i = 0; i < layers; ++i) {
     blocks_.push_back(register_module("block" + std::to_string(i), SstaBlock(config)));
   }

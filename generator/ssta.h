@@ -5,6 +5,7 @@
 #include <torch/nn/modules/linear.h>
 #include <torch/nn/modules/normalization.h>
 
+#include "generator/attention_stack.h"
 #include "generator/condition.h"
 
 namespace remomask {
@@ -20,17 +21,21 @@ struct SstaConfig {
   int64_t embedding_width = 256;  ///< E
   bool retrieval = true;          ///< false: STA, no retrieval rows at all (residual model, MoMask)
   bool hit_states = false;        ///< retrieved motions are also read frame by frame (HitStates)
-};
-
-/// Retrieved motions as sequences: N states of all hits of a sample.
-struct HitStates {
-  at::Tensor states;   ///< [B, N, D]; undefined: none
-  at::Tensor visible;  ///< [B, N] bool; does not say whether retrieval is used
+  std::string attention = "ssta";  ///< or "joined" (joined_stack.h)
 };
 
 /// Longest token map in frames of four poses; relative distances are clipped to
 /// +-(kLongestTokenMap - 1).
 constexpr int64_t kLongestTokenMap = 49;
+
+/// Throws Error when the width does not fit the heads or the kind of attention
+/// is unknown.
+void check_attention_sizes(const SstaConfig& config);
+
+/// Token states, the pooled text (or null text), hits, states of hits.
+inline constexpr int64_t kConditionKinds = 4;
+/// The kinds that a stack can meet: files of models without hit states know three.
+int64_t condition_kinds(const SstaConfig& config);
 
 /// Condition rows before the projections of a layer, C = (S + 1) + (k + 1) + N:
 /// token states, the pooled text vector (or the null text), hits, the null hit,
@@ -38,7 +43,7 @@ constexpr int64_t kLongestTokenMap = 49;
 struct ConditionRows {
   at::Tensor text;        ///< [B, S+1, D]
   at::Tensor hit_keys;    ///< [B, k+1, 2E+1]: R_m, R_t, similarity; undefined for STA
-  at::Tensor hit_values;  ///< [B, k+1, E]: R_m; undefined for STA
+  at::Tensor hit_values;  ///< [B, k+1, E]: R_m; undefined for STA and joined rows
   at::Tensor hit_states;  ///< [B, N, D]: R_m in time and parts; undefined where there are none
   at::Tensor visible;     ///< [B, C] bool
   at::Tensor kinds;       ///< [C] int64: 0 token state, 1 pooled text, 2 hit, 3 state of a hit
@@ -59,14 +64,6 @@ class ConditionEncoderImpl : public torch::nn::Module {
   at::Tensor null_text_, null_hit_key_, null_hit_value_;
 };
 TORCH_MODULE(ConditionEncoder);
-
-/// Keys and values of the condition rows for one layer: they do not depend on
-/// the tokens, so a generation computes them once.
-struct ConditionCache {
-  at::Tensor keys;    ///< [B, C, D]
-  at::Tensor values;  ///< [B, C, D]
-  at::Tensor bias;    ///< [B, H, C]: the scalar of the row's kind, -1e4 where hidden
-};
 
 /// Which entry of the relative bias table belongs to a pair of tokens:
 /// [n * n] int64 for n = frames * rows tokens in time-major order, value
@@ -118,21 +115,20 @@ class SstaBlockImpl : public torch::nn::Module {
 };
 TORCH_MODULE(SstaBlock);
 
-/// L blocks and a final LayerNorm over the flattened token map, with its
-/// condition encoder.
-class SstaStackImpl : public torch::nn::Module {
+/// L blocks of SSTA with their condition encoder.
+class SstaStackImpl : public AttentionStackImpl {
  public:
   SstaStackImpl(const SstaConfig& config, int64_t layers);
 
-  /// Everything that depends on the condition only, one entry a layer.
-  std::vector<ConditionCache> prepare(const Condition& condition, const HitStates& hit_states = {});
-  /// x [B, n, D], time-major (token t * rows + row), without positions: the 2D
-  /// sinusoid is added here. frame_mask [B, n / rows] or undefined.
-  /// `after_block`, when given, receives the residual stream after each block.
+  /// One entry a layer: keys and values of the condition rows, and as bias
+  /// [B, H, C] the scalar of the row's kind.
+  std::vector<ConditionCache> prepare(const Condition& condition,
+                                      const HitStates& hit_states = {}) override;
   at::Tensor forward(at::Tensor x, const std::vector<ConditionCache>& condition,
-                     const at::Tensor& frame_mask, std::vector<at::Tensor>* after_block = nullptr);
+                     const at::Tensor& frame_mask,
+                     std::vector<at::Tensor>* after_block = nullptr) override;
   /// N(0, 0.02) weights, zero biases, zero retrieval values.
-  void initialise();
+  void initialise() override;
 
  private:
   SstaConfig config_;

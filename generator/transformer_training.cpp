@@ -87,7 +87,8 @@ TransformerBatch masked_batch(const GeneratorData& data, const std::vector<size_
     CounterRandom random = sample_random(options.trainer.seed, step, b);
     int64_t caption = 0;
     maps.push_back(choose_view(clip, random, caption).slice(2, 0, 1));
-    const ConditionDrop drop = draw_condition_drop(random);
+    ConditionDrop drop = draw_condition_drop(random);
+    if (!config.drops_conditions) drop = {};
     samples.push_back({clip.captions[static_cast<size_t>(caption)],
                        draw_hits(data.train.hits, clip.first_query + caption, config.max_hits,
                                  options.noise_hits, random),

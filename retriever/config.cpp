@@ -38,6 +38,14 @@ RetrieverConfig retriever_preset(const std::string& preset) {
     config.part_embedding = 16;
     return config;
   }
+  if (preset == "small") {
+    config.width = 64;
+    config.layers = 2;
+    config.hidden = 128;
+    config.embedding = 128;
+    config.part_embedding = 32;
+    return config;
+  }
   if (preset == "paper") {
     config.patch = 1;
     config.width = 512;
@@ -47,7 +55,14 @@ RetrieverConfig retriever_preset(const std::string& preset) {
     config.embedding = 512;
     return config;
   }
-  throw Error("there is no retriever preset '" + preset + "'; use tiny, base or paper");
+  throw Error("there is no retriever preset '" + preset + "'; use tiny, small, base or paper");
+}
+
+void use_whole_body_encoder(RetrieverConfig& config) {
+  config.encoders = 1;
+  // Weights of a block grow with the square of the width: (5/2)^2 is about six.
+  config.width = config.width * 5 / 2;
+  config.hidden = config.hidden * 5 / 2;
 }
 
 void to_json(nlohmann::json& json, const RetrieverConfig& config) {
@@ -62,6 +77,7 @@ void to_json(nlohmann::json& json, const RetrieverConfig& config) {
           {"dropout", config.dropout},
           {"embedding", config.embedding},
           {"part_embedding", config.part_embedding},
+          {"encoders", config.encoders},
           {"text_tower", config.text_tower}};
 }
 
@@ -77,6 +93,8 @@ void from_json(const nlohmann::json& json, RetrieverConfig& config) {
   json.at("dropout").get_to(config.dropout);
   json.at("embedding").get_to(config.embedding);
   json.at("part_embedding").get_to(config.part_embedding);
+  // Files of earlier versions do not say it.
+  config.encoders = json.value("encoders", config.encoders);
   config.text_tower = json.at("text_tower");
 }
 

@@ -23,11 +23,18 @@ struct RetrieverConfig {
   double dropout = 0.1;                                      ///< in the projection heads
   int64_t embedding = 256;                                   ///< E
   int64_t part_embedding = 64;                               ///< P
+  /// Motion encoders: one a body part, or 1 that reads the whole body.
+  int64_t encoders = 6;
   nlohmann::json text_tower;  ///< of TextTower::config(); empty: made by the training
 };
 
-/// "tiny" (tests), "base" (default) or "paper" (sizes of the publication).
+/// "tiny" (tests), "small", "base" (default) or "paper" (sizes of the publication).
 RetrieverConfig retriever_preset(const std::string& preset);
+
+/// One encoder over the whole body in place of six over its parts, as wide as
+/// makes about as many weights. The six part vectors are then six heads of the
+/// one state.
+void use_whole_body_encoder(RetrieverConfig& config);
 
 void to_json(nlohmann::json& json, const RetrieverConfig& config);
 void from_json(const nlohmann::json& json, RetrieverConfig& config);

@@ -27,33 +27,36 @@ const Skeleton& retriever_skeleton(const std::string& name) {
   throw Error("the retriever does not know the skeleton '" + name + "'; use humanml3d or kit");
 }
 
-/// x [6, M, a] through the six linear layers [6, a, b], [6, 1, b].
+/// x [G, M, a] through G linear layers [G, a, b], [G, 1, b].
 at::Tensor grouped_linear(const at::Tensor& x, const at::Tensor& weight, const at::Tensor& bias) {
   return torch::baddbmm(bias, x, weight);
 }
 
 at::Tensor plain_layer_norm(const at::Tensor& x) { return torch::layer_norm(x, {x.size(2)}); }
 
-at::Tensor initial_weight(int64_t input, int64_t output) {
-  return torch::randn({kBodyParts, input, output}) / std::sqrt(static_cast<double>(input));
+at::Tensor initial_weight(int64_t groups, int64_t input, int64_t output) {
+  return torch::randn({groups, input, output}) / std::sqrt(static_cast<double>(input));
 }
 
 }  // namespace
 
-/// Pre-norm transformer block with weights [6, in, out].
+/// Pre-norm transformer block with weights [encoders, in, out].
 class PartBlockImpl : public torch::nn::Module {
  public:
-  PartBlockImpl(int64_t width, int64_t heads, int64_t hidden)
+  PartBlockImpl(int64_t encoders, int64_t width, int64_t heads, int64_t hidden)
       : heads_(heads),
-        attend_weight_(register_parameter("attend_weight", initial_weight(width, 3 * width))),
-        attend_bias_(register_parameter("attend_bias", torch::zeros({kBodyParts, 1, 3 * width}))),
-        output_weight_(register_parameter("output_weight", 0.5 * initial_weight(width, width))),
-        output_bias_(register_parameter("output_bias", torch::zeros({kBodyParts, 1, width}))),
-        expand_weight_(register_parameter("expand_weight", initial_weight(width, hidden))),
-        expand_bias_(register_parameter("expand_bias", torch::zeros({kBodyParts, 1, hidden}))),
+        attend_weight_(
+            register_parameter("attend_weight", initial_weight(encoders, width, 3 * width))),
+        attend_bias_(register_parameter("attend_bias", torch::zeros({encoders, 1, 3 * width}))),
+        output_weight_(
+            register_parameter("output_weight", 0.5 * initial_weight(encoders, width, width))),
+        output_bias_(register_parameter("output_bias", torch::zeros({encoders, 1, width}))),
+        expand_weight_(
+            register_parameter("expand_weight", initial_weight(encoders, width, hidden))),
+        expand_bias_(register_parameter("expand_bias", torch::zeros({encoders, 1, hidden}))),
         contract_weight_(
-            register_parameter("contract_weight", 0.5 * initial_weight(hidden, width))),
-        contract_bias_(register_parameter("contract_bias", torch::zeros({kBodyParts, 1, width}))) {}
+            register_parameter("contract_weight", 0.5 * initial_weight(encoders, hidden, width))),
+        contract_bias_(register_parameter("contract_bias", torch::zeros({encoders, 1, width}))) {}
 
   at::Tensor forward(const at::Tensor& x, const std::vector<int64_t>& offsets) {
     const at::Tensor attended = packed_attention(
@@ -93,27 +96,34 @@ MotionEncoder::MotionEncoder(const RetrieverConfig& config) : config_(config) {
   if (config.width % config.heads != 0 || config.width % 2 != 0) {
     throw Error("the retriever's width must be even and a multiple of its heads");
   }
-  for (int part = 0; part < kBodyParts; ++part) {
-    columns_.push_back(part_columns(skeleton, part));
-    widest_ = std::max(widest_, static_cast<int64_t>(columns_.back().size()));
+  if (config.encoders != 1 && config.encoders != kBodyParts) {
+    throw Error("the retriever's encoders must be 1 or 6");
   }
-  const int64_t width = config.width;
+  columns_.resize(static_cast<size_t>(config.encoders));
+  for (int part = 0; part < kBodyParts; ++part) {
+    auto& columns = columns_[static_cast<size_t>(part) % columns_.size()];
+    const std::vector<int> more = part_columns(skeleton, part);
+    columns.insert(columns.end(), more.begin(), more.end());
+    widest_ = std::max(widest_, static_cast<int64_t>(columns.size()));
+  }
+  const int64_t width = config.width, encoders = config.encoders;
   mean_ = register_buffer("mean", torch::zeros({skeleton.feature_dim()}));
   inverse_deviation_ = register_buffer("inverse_deviation", torch::ones({skeleton.feature_dim()}));
   // The last input is 1 for a start token alone: its weights are that token.
-  at::Tensor embedding = initial_weight(config.patch * widest_ + 1, width);
+  at::Tensor embedding = initial_weight(encoders, config.patch * widest_ + 1, width);
   embedding.slice(1, config.patch * widest_).normal_(0, 0.5);
   embed_weight_ = register_parameter("embed_weight", embedding);
-  embed_bias_ = register_parameter("embed_bias", torch::zeros({kBodyParts, 1, width}));
+  embed_bias_ = register_parameter("embed_bias", torch::zeros({encoders, 1, width}));
   positions_ = sinusoidal_positions(1024, width);
   for (int64_t i = 0; i < config.layers; ++i) {
-    blocks_.push_back(
-        register_module("block" + std::to_string(i),
-                        std::make_shared<PartBlockImpl>(width, config.heads, config.hidden)));
+    blocks_.push_back(register_module(
+        "block" + std::to_string(i),
+        std::make_shared<PartBlockImpl>(encoders, width, config.heads, config.hidden)));
   }
-  head_ = register_module("head", std::make_shared<ProjectionHead>(
-                                      kBodyParts * width, config.embedding, config.dropout));
-  part_weight_ = register_parameter("part_weight", initial_weight(width, config.part_embedding));
+  head_ = register_module(
+      "head", std::make_shared<ProjectionHead>(encoders * width, config.embedding, config.dropout));
+  part_weight_ =
+      register_parameter("part_weight", initial_weight(kBodyParts, width, config.part_embedding));
   part_bias_ =
       register_parameter("part_bias", torch::zeros({kBodyParts, 1, config.part_embedding}));
 }
@@ -174,7 +184,7 @@ PatchBatch MotionEncoder::patches(const std::vector<MotionCrop>& crops) const {
                 std::to_string(patch * positions_.size(0)) + " frames");
   }
   const int64_t inputs = patch * widest_ + 1;
-  batch.patches = torch::zeros({kBodyParts, total, inputs});
+  batch.patches = torch::zeros({config_.encoders, total, inputs});
   float* values = batch.patches.data_ptr<float>();
   const auto place = [&](size_t part, int64_t row) {
     return values + (static_cast<int64_t>(part) * total + row) * inputs;
@@ -222,7 +232,9 @@ MotionVectors MotionEncoder::forward(const PatchBatch& batch) {
   const at::Tensor starts = plain_layer_norm(x.index_select(1, torch::tensor(first, torch::kLong)));
   MotionVectors vectors;
   vectors.global = head_->forward(starts.transpose(0, 1).flatten(1));
-  vectors.parts = unit_rows(grouped_linear(starts, part_weight_, part_bias_).transpose(0, 1));
+  // A single encoder's state goes through the heads of all parts.
+  const at::Tensor of_parts = starts.expand({kBodyParts, -1, -1});
+  vectors.parts = unit_rows(grouped_linear(of_parts, part_weight_, part_bias_).transpose(0, 1));
   return vectors;
 }
 

@@ -16,8 +16,8 @@ namespace remomask {
 /// Crops of clips as patches, one sequence after the other; each sequence
 /// begins with a start token.
 struct PatchBatch {
-  at::Tensor patches;    ///< [6, M, patch x widest part + 1]; empty columns are zero, the last
-                         ///< column is 1 for start tokens
+  at::Tensor patches;    ///< [encoders, M, patch x widest part + 1]; empty columns are zero, the
+                         ///< last column is 1 for start tokens
   at::Tensor positions;  ///< [M] int64; 0 for start tokens, else 1 + place in the crop
   std::vector<int64_t> offsets;  ///< [B + 1] first token of each clip
 };
@@ -46,7 +46,9 @@ class PartBlockImpl;
 
 /// Six transformers, one a body part: patches of `patch` frames, a learned
 /// [CLS], sinusoidal positions, pre-norm blocks; the six [CLS] states together
-/// through a projection head are the clip's vector (ReMoMask 3.2).
+/// through a projection head are the clip's vector (ReMoMask 3.2). With
+/// RetrieverConfig::encoders = 1 a single one reads the whole body, and the part
+/// vectors are six heads of its state.
 /// LayerNorms have no gain and offset of their own: a linear layer follows each.
 class MotionEncoder final : public torch::nn::Module {
  public:
@@ -59,7 +61,7 @@ class MotionEncoder final : public torch::nn::Module {
   /// width, or not finite.
   PatchBatch patches(const std::vector<MotionCrop>& crops) const;
   MotionVectors forward(const PatchBatch& batch);
-  /// States of the tokens after each block, for tests: [6, M, D] each.
+  /// States of the tokens after each block, for tests: [encoders, M, D] each.
   std::vector<at::Tensor> block_states(const PatchBatch& batch);
 
  private:
@@ -67,10 +69,10 @@ class MotionEncoder final : public torch::nn::Module {
   void normalise_row(const float* row, std::vector<float>& normal) const;
 
   RetrieverConfig config_;
-  std::vector<std::vector<int>> columns_;  ///< of each part
+  std::vector<std::vector<int>> columns_;  ///< of each encoder
   int64_t widest_ = 0;
   at::Tensor mean_, inverse_deviation_;   ///< [C]
-  at::Tensor embed_weight_, embed_bias_;  ///< [6, patch x widest + 1, D], [6, 1, D]
+  at::Tensor embed_weight_, embed_bias_;  ///< [encoders, patch x widest + 1, D], [encoders, 1, D]
   at::Tensor positions_;                  ///< table, not stored
   std::vector<std::shared_ptr<PartBlockImpl>> blocks_;
   std::shared_ptr<ProjectionHead> head_;

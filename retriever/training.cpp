@@ -194,6 +194,7 @@ ModelStage train_retriever(const std::vector<TrainingClip>& train,
   }
   config.text_tower = text_stage ? text_stage->config : fresh_text_tower(clips, config.preset);
   config.text_tower.erase("history");
+  config.text_tower.erase("recipe");
 
   torch::manual_seed(options.trainer.seed);
   BmmModel model(config, options.queues, options.queue_size, options.momentum, options.temperature,

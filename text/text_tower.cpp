@@ -20,6 +20,14 @@ TextEncoderConfig text_encoder_preset(const std::string& preset) {
     config.vocabulary_size = 600;
     return config;
   }
+  if (preset == "small") {
+    config.width = 128;
+    config.layers = 2;
+    config.heads = 4;
+    config.hidden = 256;
+    config.vocabulary_size = 1000;
+    return config;
+  }
   if (preset == "paper") {
     config.width = 768;
     config.layers = 6;
@@ -28,7 +36,7 @@ TextEncoderConfig text_encoder_preset(const std::string& preset) {
     config.vocabulary_size = 8000;
     return config;
   }
-  throw Error("there is no text encoder preset '" + preset + "'; use tiny, base or paper");
+  throw Error("there is no text encoder preset '" + preset + "'; use tiny, small, base or paper");
 }
 
 void to_json(nlohmann::json& json, const TextEncoderConfig& config) {

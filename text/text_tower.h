@@ -50,7 +50,7 @@ struct TextEncoderConfig {
   std::vector<std::string> vocabulary;  ///< WordPiece tokens by id
 };
 
-/// Sizes of preset "tiny", "base" or "paper"; no vocabulary yet.
+/// Sizes of preset "tiny", "small", "base" or "paper"; no vocabulary yet.
 TextEncoderConfig text_encoder_preset(const std::string& preset);
 
 void to_json(nlohmann::json& json, const TextEncoderConfig& config);

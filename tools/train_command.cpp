@@ -1,16 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "evaluation/evaluator_training.h"
-#include "generator/presets.h"
-#include "retriever/training.h"
+#include "generator/model_training.h"
+#include "generator/variants.h"
 #include "tools/program.h"
-#include "tools/training_presets.h"
-#include "tools/workspace.h"
 
 namespace remomask {
 
@@ -19,12 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct TrainOptions {
-  std::string stage, database, folder, preset = "base", queues = "both";
+  std::string stage, database, folder, preset = "base", variant = "full", queues = "both";
   std::vector<std::string> captions, sources;
   std::optional<int64_t> steps, batch, queue_size;
-  std::optional<double> learning_rate;
+  std::optional<double> learning_rate, same_label_weight;
   uint64_t seed = 1;
-  std::optional<double> same_label_weight;
 };
 
 /// Captions of JSON Lines files ({"captions": [...], "split": ...}); those of a
@@ -47,154 +45,91 @@ void read_more_captions(const std::string& path, std::vector<std::string>& capti
   }
 }
 
-class TrainingRun {
- public:
-  TrainingRun(const TrainOptions& options, Program& program)
-      : options_(options),
-        program_(program),
-        monitor_(program.monitor()),
-        preset_(model_preset(options.preset)),
-        database_(options.database, OpenMode::read_only) {
-    fs::create_directories(options.folder);
+/// The recipe with what the user wants otherwise, the same for every stage.
+TrainingRecipe chosen_recipe(const TrainOptions& options) {
+  TrainingRecipe recipe = training_recipe(options.preset);
+  recipe.retriever_training.queues = parse_queues(options.queues);
+  if (options.queue_size) recipe.retriever_training.queue_size = *options.queue_size;
+  if (options.same_label_weight) {
+    recipe.retriever_training.same_meaning_weight = *options.same_label_weight;
   }
+  apply_variant(recipe, options.variant);
+  for (const std::string& stage : recipe_stages(recipe)) {
+    TrainerOptions& trainer = stage_trainer(recipe, stage);
+    set_stage_steps(recipe, stage, options.steps.value_or(trainer.steps));
+    if (options.batch) set_stage_batch(recipe, stage, *options.batch);
+    if (options.learning_rate) trainer.learning_rate = *options.learning_rate;
+    trainer.seed = options.seed;
+  }
+  return recipe;
+}
 
-  void run() {
-    const std::vector<std::string> order = {"text", "retriever", "tokenizer", "masked", "residual"};
-    if (options_.stage != "all") return train(options_.stage);
-    for (const std::string& stage : order) {
-      if (fs::exists(stage_path(stage))) {
-        program_.warn(stage_path(stage) + " is there and is kept; remove it to train it again");
-      } else {
-        train(stage);
-      }
+TrainingSplits load_splits(const TrainOptions& options) {
+  const Database database(options.database, OpenMode::read_only);
+  const auto load = [&](const std::string& split) {
+    TrainingSetOptions set;
+    set.splits = {split};
+    set.sources = options.sources;
+    set.add_mirrored = split == "train";
+    auto clips = load_training_set(database, set);
+    if (clips.empty()) {
+      throw FileError(options.database, 0, "has no clips of split \"" + split + "\"");
     }
-    const std::string path = (fs::path(options_.folder) / "model.safetensors").string();
-    std::vector<ModelStage> stages;
-    for (const std::string& stage : order) {
-      if (stage != "text") stages.push_back(load_stage(stage_path(stage), stage));
+    return clips;
+  };
+  TrainingSplits splits{load("train"), load("val"), {}};
+  for (const std::string& path : options.captions) read_more_captions(path, splits.more_captions);
+  return splits;
+}
+
+/// Trains the evaluator, which is no part of a model.
+void train_judge(const TrainOptions& options, const TrainingSplits& clips, const std::string& path,
+                 const Monitor& monitor) {
+  EvaluatorTrainingOptions training(options.preset);
+  TrainerOptions& trainer = training.trainer;
+  trainer.steps = options.steps.value_or(trainer.steps);
+  trainer.learning_rate = options.learning_rate.value_or(trainer.learning_rate);
+  trainer.warmup_steps = std::min(trainer.warmup_steps, std::max<int64_t>(1, trainer.steps / 10));
+  trainer.seed = training.movement.seed = options.seed;
+  trainer.checkpoint_path = path + ".checkpoint";
+  training.batch = options.batch.value_or(training.batch);
+  const ModelStage stage =
+      train_evaluator(clips.train, clips.val, evaluator_preset(options.preset), training, monitor);
+  save_model(path, {stage}, /*half=*/true);
+  fs::remove(path + ".checkpoint");
+  fs::remove(path + ".checkpoint.movement");
+}
+
+void run_training(const TrainOptions& options, Program& program) {
+  const TrainingSplits clips = load_splits(options);
+  const StageFile file = [&](const std::string& stage) {
+    return (fs::path(options.folder) / (stage + ".safetensors")).string();
+  };
+  fs::create_directories(options.folder);
+  if (options.stage == "evaluator") {
+    train_judge(options, clips, file("evaluator"), program.monitor());
+    program.finish_progress();
+    fmt::print("{}\n", file("evaluator"));
+    return;
+  }
+  const TrainingRecipe recipe = chosen_recipe(options);
+  const bool all = options.stage == "all";
+  const std::vector<std::string> stages = recipe_stages(recipe);
+  if (!all && std::find(stages.begin(), stages.end(), options.stage) == stages.end()) {
+    throw Error("variant " + options.variant + " has no stage " + options.stage);
+  }
+  GeneratorDataCache prepared;
+  for (const std::string& stage : all ? stages : std::vector{options.stage}) {
+    if (all && fs::exists(file(stage))) {
+      program.warn(file(stage) + " is there and is kept; remove it to train it again");
+      continue;
     }
-    save_model(path, stages, /*half=*/true);
-    program_.finish_progress();
-    fmt::print("{}\n", path);
+    train_stage(recipe, stage, file, clips, prepared, program.monitor());
   }
-
- private:
-  std::string stage_path(const std::string& stage) const {
-    return (fs::path(options_.folder) / (stage + ".safetensors")).string();
-  }
-
-  const std::vector<TrainingClip>& clips(const std::string& split) {
-    auto& kept = clips_[split];
-    if (kept.empty()) {
-      TrainingSetOptions set;
-      set.splits = {split};
-      set.sources = options_.sources;
-      set.add_mirrored = split == "train";
-      kept = load_training_set(database_, set);
-      if (kept.empty()) {
-        throw FileError(options_.database, 0, "has no clips of split \"" + split + "\"");
-      }
-    }
-    return kept;
-  }
-
-  template <typename Options>
-  Options adjusted(Options options, const std::string& stage) {
-    if (options_.steps) options.trainer.steps = *options_.steps;
-    if (options_.learning_rate) options.trainer.learning_rate = *options_.learning_rate;
-    options.trainer.warmup_steps =
-        std::min(options.trainer.warmup_steps, std::max<int64_t>(1, options.trainer.steps / 10));
-    options.trainer.seed = options_.seed;
-    options.trainer.checkpoint_path = stage_path(stage) + ".checkpoint";
-    return options;
-  }
-
-  void train(const std::string& stage) {
-    const ModelStage result = stage == "evaluator"   ? train_evaluator_stage()
-                              : stage == "text"      ? train_text()
-                              : stage == "retriever" ? train_retriever_stage()
-                              : stage == "tokenizer" ? train_tokenizer_stage()
-                              : stage == "masked"    ? train_masked_stage()
-                                                     : train_residual_stage();
-    save_model(stage_path(stage), {result}, /*half=*/stage == "evaluator");
-    fs::remove(stage_path(stage) + ".checkpoint");
-    fs::remove(stage_path(stage) + ".checkpoint.movement");
-    program_.finish_progress();
-    if (options_.stage != "all") fmt::print("{}\n", stage_path(stage));
-  }
-
-  ModelStage train_text() {
-    std::vector<std::string> captions;
-    for (const TrainingClip& clip : clips("train")) {
-      captions.insert(captions.end(), clip.captions.begin(), clip.captions.end());
-    }
-    for (const std::string& path : options_.captions) read_more_captions(path, captions);
-    auto options = adjusted(text_training_preset(options_.preset), "text");
-    if (options_.batch) options.batch = *options_.batch;
-    return train_text_encoder(captions, text_encoder_preset(options_.preset), options, monitor_);
-  }
-
-  ModelStage train_retriever_stage() {
-    std::optional<ModelStage> text;
-    if (fs::exists(stage_path("text"))) text = load_stage(stage_path("text"), "text");
-    auto options = adjusted(RetrieverTrainingOptions(options_.preset), "retriever");
-    if (options_.batch) options.batch = *options_.batch;
-    options.queues = parse_queues(options_.queues);
-    if (options_.queue_size) options.queue_size = *options_.queue_size;
-    if (options_.same_label_weight) options.same_meaning_weight = *options_.same_label_weight;
-    return train_retriever(clips("train"), clips("val"), text, preset_.retriever, options,
-                           monitor_);
-  }
-
-  ModelStage train_tokenizer_stage() {
-    auto options = adjusted(tokenizer_training_preset(options_.preset), "tokenizer");
-    if (options_.batch) options.batch_frames = *options_.batch * options.window;
-    return train_tokenizer(clips("train"), clips("val"), preset_.tokenizer, options, monitor_);
-  }
-
-  ModelStage train_masked_stage() {
-    return train_masked(preset_.masked, generator_data(), transformer_options("masked"), monitor_);
-  }
-
-  ModelStage train_residual_stage() {
-    return train_residual(preset_.residual, generator_data(), transformer_options("residual"),
-                          monitor_);
-  }
-
-  ModelStage train_evaluator_stage() {
-    auto options = adjusted(EvaluatorTrainingOptions(options_.preset), "evaluator");
-    options.movement.seed = options_.seed;
-    if (options_.batch) options.batch = *options_.batch;
-    return train_evaluator(clips("train"), clips("val"), evaluator_preset(options_.preset), options,
-                           monitor_);
-  }
-
-  TransformerTrainingOptions transformer_options(const std::string& stage) {
-    auto options = adjusted(stage == "masked" ? masked_training_preset(options_.preset)
-                                              : residual_training_preset(options_.preset),
-                            stage);
-    if (options_.batch) options.batch = *options_.batch;
-    return options;
-  }
-
-  const GeneratorData& generator_data() {
-    if (!generator_data_) {
-      const Tokenizer tokenizer(load_stage(stage_path("tokenizer"), "tokenizer"));
-      const Retriever retriever(load_stage(stage_path("retriever"), "retriever"));
-      generator_data_ =
-          prepare_generator_data(clips("train"), clips("val"), tokenizer, retriever, monitor_);
-    }
-    return *generator_data_;
-  }
-
-  const TrainOptions& options_;
-  Program& program_;
-  Monitor monitor_;
-  ModelConfig preset_;
-  Database database_;
-  std::map<std::string, std::vector<TrainingClip>> clips_;
-  std::optional<GeneratorData> generator_data_;
-};
+  if (all) join_stages(recipe, file, file("model"));
+  program.finish_progress();
+  fmt::print("{}\n", file(all ? "model" : options.stage));
+}
 
 }  // namespace
 
@@ -211,9 +146,15 @@ void register_train(CLI::App& app, Program& program) {
           {"text", "retriever", "tokenizer", "masked", "residual", "all", "evaluator"}));
   command->add_option("--db", options->database, "database with splits train and val")->required();
   command->add_option("-o,--output", options->folder, "folder of the stage files")->required();
-  command->add_option("--preset", options->preset, "tiny, base, paper or momask")
+  command->add_option("--preset", options->preset, "sizes of all networks")
       ->capture_default_str()
-      ->check(CLI::IsMember({"tiny", "base", "paper", "momask"}));
+      ->check(CLI::IsMember(model_presets()));
+  std::string variants;
+  for (const ModelVariant& variant : model_variants()) variants += variant.name + ", ";
+  command
+      ->add_option("--variant", options->variant,
+                   "leave something out: " + variants + "levels-N, quantizer-dropout-PERCENT")
+      ->capture_default_str();
   command->add_option("--source", options->sources, "only these data sets (repeatable)");
   command->add_option("--captions", options->captions,
                       "more captions for the text encoder: JSON Lines with \"captions\"");
@@ -238,7 +179,7 @@ void register_train(CLI::App& app, Program& program) {
                    "retriever: weight of clips with equal labels content and style as negatives of "
                    "each other; default: of the preset")
       ->check(CLI::Range(0.0, 1.0));
-  command->callback([options, &program] { TrainingRun(*options, program).run(); });
+  command->callback([options, &program] { run_training(*options, program); });
 }
 
 }  // namespace remomask

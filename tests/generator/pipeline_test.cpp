@@ -144,7 +144,7 @@ TEST(Pipeline, WrongInputsAreErrors) {
 }
 
 TEST(Presets, SizesFitTogether) {
-  for (const std::string name : {"tiny", "base", "paper", "momask"}) {
+  for (const std::string& name : model_presets()) {
     const ModelConfig model = model_preset(name);
     EXPECT_EQ(model.masked.codes, model.tokenizer.codes) << name;
     EXPECT_EQ(model.residual.rows, model.tokenizer.rows) << name;

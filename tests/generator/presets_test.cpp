@@ -21,7 +21,7 @@ int64_t parameter_count(const torch::nn::Module& module) {
 }
 
 TEST(PresetsTest, SizesAgreeBetweenTheNetworks) {
-  for (const char* name : {"tiny", "base", "paper", "momask"}) {
+  for (const std::string& name : model_presets()) {
     const ModelConfig model = model_preset(name);
     EXPECT_EQ(model.masked.rows, model.tokenizer.rows) << name;
     EXPECT_EQ(model.residual.codes, model.tokenizer.codes) << name;
@@ -39,6 +39,24 @@ TEST(PresetsTest, MomaskIsOneRowWithoutRetrieval) {
   TokenizerNetwork network(model.tokenizer);
   // 19,436,807 parameters of MoMask's convolutions (its codebooks are buffers here too).
   EXPECT_NEAR(static_cast<double>(parameter_count(*network)), 19436807.0, 0.02 * 19436807.0);
+}
+
+// A comparison of the two designs is fair when neither has more weights.
+TEST(PresetsTest, MomaskOfASizeHasAboutItsWeights) {
+  for (const char* size : {"small", "base"}) {
+    const ModelConfig body = model_preset(size);
+    const ModelConfig row = model_preset(std::string("momask-") + size);
+    EXPECT_EQ(row.tokenizer.rows, 1);
+    EXPECT_EQ(row.masked.attention, "joined");
+    EXPECT_EQ(row.masked.preset, std::string("momask-") + size);
+    const auto ratio = [](const torch::nn::Module& a, const torch::nn::Module& b) {
+      return static_cast<double>(parameter_count(a)) / static_cast<double>(parameter_count(b));
+    };
+    EXPECT_NEAR(ratio(*TokenizerNetwork(row.tokenizer), *TokenizerNetwork(body.tokenizer)), 1, 0.2)
+        << size;
+  }
+  EXPECT_EQ(preset_size("momask-base"), "base");
+  EXPECT_EQ(preset_size("momask"), "momask");
 }
 
 TEST(PresetsTest, PaperTransformersHaveThePublishedShape) {

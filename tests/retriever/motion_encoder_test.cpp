@@ -112,6 +112,45 @@ TEST(MotionEncoder, KeepsTokensApartAtTheStart) {
   }
 }
 
+TEST(MotionEncoder, OneEncoderReadsTheWholeBody) {
+  torch::manual_seed(1);
+  RetrieverConfig config = tiny_retriever_config();
+  use_whole_body_encoder(config);
+  MotionEncoder encoder(config);
+  const Features a = random_features(40, 1);
+  const PatchBatch patches = encoder.patches({whole_clip(a)});
+  // All 263 columns of the 4 frames of a patch, and the mark of the start token.
+  EXPECT_EQ(patches.patches.sizes(), (std::vector<int64_t>{1, 11, 4 * 263 + 1}));
+  const MotionVectors vectors = encoder.forward(patches);
+  EXPECT_EQ(vectors.parts.sizes(), (std::vector<int64_t>{1, 6, config.part_embedding}));
+  EXPECT_GT((vectors.parts[0][0] - vectors.parts[0][1]).abs().max().item<float>(), 1e-3f);
+  (vectors.global.sum() + vectors.parts.square().sum()).backward();
+  for (const auto& item : encoder.named_parameters()) {
+    EXPECT_TRUE(item.value().grad().defined()) << item.key();
+  }
+  config.encoders = 3;
+  EXPECT_THROW(MotionEncoder{config}, Error);
+}
+
+// The ablation is about where the weights are, not about how many there are.
+TEST(MotionEncoder, OneEncoderHasAboutAsManyWeightsAsSix) {
+  const auto weights = [](const RetrieverConfig& config) {
+    int64_t count = 0;
+    for (const auto& parameter : MotionEncoder(config).parameters()) count += parameter.numel();
+    return static_cast<double>(count);
+  };
+  for (const char* preset : {"small", "base"}) {
+    RetrieverConfig config = retriever_preset(preset);
+    const double six = weights(config);
+    use_whole_body_encoder(config);
+    EXPECT_NEAR(weights(config) / six, 1, 0.2) << preset;
+    EXPECT_EQ(nlohmann::json(config).get<RetrieverConfig>().encoders, 1);
+  }
+  nlohmann::json old_file = retriever_preset("base");
+  old_file.erase("encoders");
+  EXPECT_EQ(old_file.get<RetrieverConfig>().encoders, 6);
+}
+
 TEST(MotionEncoder, KitHasItsOwnParts) {
   RetrieverConfig config = tiny_retriever_config();
   config.skeleton = "kit";

@@ -1,0 +1,134 @@
+#include "generator/variants.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "base/error.h"
+#include "generator/model_training.h"
+#include "generator/pipeline.h"
+#include "tokenizer_test_tools.h"
+
+namespace remomask {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Stages whose description differs from that of the full model.
+std::set<std::string> changed_stages(const std::string& variant) {
+  TrainingRecipe full = training_recipe("small"), other = full;
+  apply_variant(other, variant);
+  std::set<std::string> changed;
+  for (const std::string& stage : recipe_stages(full)) {
+    if (stage_description(full, stage) != stage_description(other, stage)) changed.insert(stage);
+  }
+  return changed;
+}
+
+// All else equal: a variant touches the stages that it is about and no other.
+TEST(Variants, ChangeOneThing) {
+  using Stages = std::set<std::string>;
+  EXPECT_EQ(changed_stages("full"), Stages{});
+  EXPECT_EQ(changed_stages("momask"), (Stages{"tokenizer", "masked", "residual"}));
+  EXPECT_EQ(changed_stages("no-retrieval"), Stages{"masked"});
+  EXPECT_EQ(changed_stages("no-queues"), Stages{"retriever"});
+  EXPECT_EQ(changed_stages("no-ssta"), Stages{"masked"});
+  EXPECT_EQ(changed_stages("no-rag-cfg"), Stages{"masked"});
+  EXPECT_EQ(changed_stages("no-part-encoders"), Stages{"retriever"});
+  EXPECT_EQ(changed_stages("levels-2"), (Stages{"tokenizer", "residual"}));
+  EXPECT_EQ(changed_stages("quantizer-dropout-0"), Stages{"tokenizer"});
+}
+
+TEST(Variants, UnknownOnesAreRefused) {
+  for (const char* name :
+       {"no-legs", "levels-0", "levels-9", "levels-", "levels-2x", "quantizer-dropout-95", ""}) {
+    EXPECT_THROW(find_variant(name), Error) << name;
+  }
+  TrainingRecipe baseline = training_recipe("momask-tiny");
+  EXPECT_THROW(apply_variant(baseline, "no-ssta"), Error);
+  EXPECT_NO_THROW(apply_variant(baseline, "full"));
+}
+
+TEST(Variants, EveryPresetHasARecipeForEveryStage) {
+  for (const std::string& preset : model_presets()) {
+    const TrainingRecipe recipe = training_recipe(preset);
+    for (const std::string& stage : recipe_stages(recipe)) {
+      EXPECT_EQ(stage_trainer(recipe, stage).stage_name, stage) << preset;
+      EXPECT_GT(stage_trainer(recipe, stage).steps, 0) << preset;
+      EXPECT_FALSE(stage_description(recipe, stage).at("config").empty());
+    }
+  }
+  TrainingRecipe one_level = training_recipe("tiny");
+  apply_variant(one_level, "levels-1");
+  EXPECT_EQ(recipe_stages(one_level).back(), "masked");
+  EXPECT_THROW(stage_trainer(one_level, "evaluator"), Error);
+}
+
+TrainingSplits variant_clips() {
+  TrainingSplits splits;
+  splits.train = swinging_clips({40, 48, 60, 44, 52, 72, 41, 64});
+  const std::vector<std::string> texts = {"a person walks", "someone runs in a circle",
+                                          "a man waves", "a person jumps and turns"};
+  for (size_t i = 0; i < splits.train.size(); ++i) {
+    TrainingClip& clip = splits.train[i];
+    clip.split = "train";
+    clip.group = static_cast<int>(i / 2);
+    for (const char* how : {"", " slowly", " quickly"}) clip.captions.push_back(texts[i % 4] + how);
+  }
+  for (const std::string& text : texts) {
+    for (const char* how : {" twice", " again", " at last"}) {
+      splits.more_captions.push_back(text + how);
+    }
+  }
+  splits.val = {splits.train[0]};
+  return splits;
+}
+
+// Every variant goes the whole road: trained, stored, loaded, used.
+TEST(Variants, TrainStoreAndGenerate) {
+  const fs::path folder = fs::temp_directory_path() / "remomask_variants_test";
+  fs::remove_all(folder);
+  const TrainingSplits clips = variant_clips();
+  std::vector<std::string> names;
+  for (const ModelVariant& variant : model_variants()) names.push_back(variant.name);
+  names.push_back("levels-1");
+  for (const std::string& name : names) {
+    TrainingRecipe recipe = training_recipe("tiny");
+    apply_variant(recipe, name);
+    recipe.tokenizer_training.window = 32;
+    const StageFile file = [&](const std::string& stage) {
+      return (folder / name / (stage + ".safetensors")).string();
+    };
+    fs::create_directories(folder / name);
+    GeneratorDataCache prepared;
+    for (const std::string& stage : recipe_stages(recipe)) {
+      set_stage_steps(recipe, stage, 2);
+      set_stage_batch(recipe, stage, 4);
+      train_stage(recipe, stage, file, clips, prepared, {});
+      EXPECT_FALSE(fs::exists(file(stage) + ".checkpoint"));
+    }
+    join_stages(recipe, file, file("model"));
+    const auto stages = load_model(file("model"));
+    const nlohmann::json masked = stages.at("masked").config;
+    const nlohmann::json retriever = stages.at("retriever").config;
+    EXPECT_EQ(masked.at("rows"), name == "momask" ? 1 : 6) << name;
+    EXPECT_EQ(masked.at("max_hits") == 0, name == "momask" || name == "no-retrieval") << name;
+    EXPECT_EQ(masked.at("attention"), name == "momask" || name == "no-ssta" ? "joined" : "ssta");
+    EXPECT_EQ(masked.at("drops_conditions"), name != "no-rag-cfg") << name;
+    EXPECT_EQ(retriever.at("encoders"), name == "no-part-encoders" ? 1 : 6) << name;
+    EXPECT_EQ(retriever.at("recipe").at("training").at("queues"),
+              name == "no-queues" ? "none" : "both");
+    const Generator generator(stages);
+    GenerateOptions options;
+    options.seconds = 2.0;
+    options.sampling = recipe.sampling;
+    const Generated made = generator.generate("a person walks", {}, options);
+    EXPECT_EQ(made.motion.frames, 40) << name;
+    EXPECT_EQ(made.tokens.size(2), name == "levels-1" ? 1 : 3) << name;
+  }
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace remomask
