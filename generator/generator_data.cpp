@@ -171,6 +171,9 @@ GeneratorData prepare_generator_data(const std::vector<TrainingClip>& train,
   monitor.report({"encode motions", 0, 2, "tokens"});
   data.train = tokenize_split(train_clips, true, tokenizer, captions);
   data.val = tokenize_split(val_clips, false, tokenizer, captions);
+  for (size_t i = 0; i < train_clips.size(); ++i) {
+    data.train.clips[i].source = static_cast<size_t>(train_clips[i] - train.data());
+  }
   data.captions = encode_captions(captions.captions, retriever, monitor);
   monitor.report({"encode motions", 1, 2, "vectors"});
   data.motion = encode_motions(train_clips, retriever);

@@ -25,6 +25,7 @@ struct TokenClip {
   std::vector<int64_t> captions;   ///< indices into CaptionFeatures
   int64_t first_query = 0;         ///< row of its first caption in the retrieval table
   int group = 0;
+  size_t source = 0;  ///< number of the TrainingClip it was made from
 };
 
 struct TokenSplit {

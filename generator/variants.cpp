@@ -35,6 +35,8 @@ const std::vector<KnownVariant>& known_variants() {
        [](TrainingRecipe& recipe) {
          recipe.model.masked.max_hits = recipe.model.masked.sequence_hits = 0;
        }},
+      {{"no-hit-sequences", "retrieved motions as vectors only, not as token maps"},
+       [](TrainingRecipe& recipe) { recipe.model.masked.sequence_hits = 0; }},
       {{"no-queues", "retriever trained with the negatives of its batch alone"},
        [](TrainingRecipe& recipe) { recipe.retriever_training.queues = Queues::none; }},
       {{"no-ssta", "text and hits stand before the tokens in ordinary attention"},

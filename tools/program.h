@@ -34,6 +34,7 @@ class Program {
 /// Registers a sub-command: name, help with an example, options, what to run.
 using RegisterCommand = void (*)(CLI::App& app, Program& program);
 
+void register_ablate(CLI::App& app, Program& program);
 void register_import(CLI::App& app, Program& program);
 void register_info(CLI::App& app, Program& program);
 void register_index(CLI::App& app, Program& program);

@@ -32,6 +32,7 @@ TEST(Variants, ChangeOneThing) {
   EXPECT_EQ(changed_stages("full"), Stages{});
   EXPECT_EQ(changed_stages("momask"), (Stages{"tokenizer", "masked", "residual"}));
   EXPECT_EQ(changed_stages("no-retrieval"), Stages{"masked"});
+  EXPECT_EQ(changed_stages("no-hit-sequences"), Stages{"masked"});
   EXPECT_EQ(changed_stages("no-queues"), Stages{"retriever"});
   EXPECT_EQ(changed_stages("no-ssta"), Stages{"masked"});
   EXPECT_EQ(changed_stages("no-rag-cfg"), Stages{"masked"});
@@ -114,6 +115,8 @@ TEST(Variants, TrainStoreAndGenerate) {
     const nlohmann::json retriever = stages.at("retriever").config;
     EXPECT_EQ(masked.at("rows"), name == "momask" ? 1 : 6) << name;
     EXPECT_EQ(masked.at("max_hits") == 0, name == "momask" || name == "no-retrieval") << name;
+    EXPECT_EQ(masked.at("sequence_hits") == 0,
+              name == "momask" || name == "no-retrieval" || name == "no-hit-sequences");
     EXPECT_EQ(masked.at("attention"), name == "momask" || name == "no-ssta" ? "joined" : "ssta");
     EXPECT_EQ(masked.at("drops_conditions"), name != "no-rag-cfg") << name;
     EXPECT_EQ(retriever.at("encoders"), name == "no-part-encoders" ? 1 : 6) << name;

@@ -11,7 +11,8 @@ namespace {
 
 const std::vector<std::string> kCommands = {"generate",   "search",   "import",  "index",
                                             "train",      "evaluate", "convert", "sheet",
-                                            "procedural", "info",     "db",      "edit"};
+                                            "procedural", "info",     "db",      "edit",
+                                            "ablate"};
 
 TEST(UsageTest, HelpNamesEveryCommandAndEachHasAnExample) {
   const ProgramResult help = run_program({"--help"});
