@@ -135,6 +135,7 @@ void draw_line(const ChartPanel& panel, const nlohmann::json& points,
   }
   cairo_set_source_rgb(panel.cairo, 0.16, 0.50, 0.79);
   cairo_set_line_width(panel.cairo, 2.5);
+  cairo_new_path(panel.cairo);  // text leaves a current point
   for (const auto& [x, y] : corners) cairo_line_to(panel.cairo, x, y);
   cairo_stroke(panel.cairo);
   for (const auto& [x, y] : corners) {
