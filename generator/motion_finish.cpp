@@ -7,6 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "motion/foot_anchor.h"
+#include "motion/foot_lock.h"
+
 namespace remomask {
 
 void impose_bone_lengths(Motion& motion, const Skeleton& skeleton) {
@@ -72,6 +75,13 @@ void raise_frame(Motion& motion, int frame, double height) {
 }
 
 }  // namespace
+
+void hold_feet(Motion& motion, const Features& features, const Skeleton& skeleton) {
+  anchor_to_feet(motion, read_contacts(features, skeleton), skeleton);
+  PartMask all(motion.frames);
+  all.add(0, motion.frames);
+  lock_feet(motion, Motion(motion), /*floor=*/0, all, skeleton);
+}
 
 double lift_to_floor(Motion& motion, const Skeleton& skeleton, double tolerance) {
   double lowest = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "motion/motion.h"
+#include "motion/features.h"
 
 namespace remomask {
 
@@ -12,6 +12,11 @@ void impose_bone_lengths(Motion& motion, const Skeleton& skeleton);
 /// is continued as its own point reflection, so that it keeps its first and
 /// last pose. Bones change their length, see impose_bone_lengths().
 void smooth_over_time(Motion& motion, double sigma);
+
+/// Takes the sliding out of standing feet: the body is anchored to the feet that
+/// `features`, of the same frames, say to stand (anchor_to_feet), then each of
+/// them is held where it stands (lock_feet). Bone lengths stay.
+void hold_feet(Motion& motion, const Features& features, const Skeleton& skeleton);
 
 /// Raises a motion whose lowest foot is more than `tolerance` (metres) below
 /// the floor, so that this foot touches it. Motions above the floor stay:

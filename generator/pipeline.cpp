@@ -227,10 +227,12 @@ int Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last, const std:
   return static_cast<int>(used.size());
 }
 
-Motion Generator::decode(const at::Tensor& tokens) const {
-  Motion motion = recover_motion(impl_->tokenizer.decode(tokens), impl_->skeleton);
+Motion Generator::decode(const at::Tensor& tokens, bool held_feet) const {
+  const Features features = impl_->tokenizer.decode(tokens);
+  Motion motion = recover_motion(features, impl_->skeleton);
   smooth_over_time(motion, kDecodeSmoothing);
   impose_bone_lengths(motion, impl_->skeleton);
+  if (held_feet) hold_feet(motion, features, impl_->skeleton);
   return motion;
 }
 
@@ -245,7 +247,7 @@ Generated Generator::generate(const std::string& prompt, const std::vector<Retri
   result.hits_used = fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times);
   result.tokens = map.tokens;
   Stopwatch watch;
-  result.motion = slice(decode(result.tokens), 0, frames);
+  result.motion = slice(decode(result.tokens, options.held_feet), 0, frames);
   result.times.decode = watch.lap();
   lift_to_floor(result.motion, impl_->skeleton);
   result.times.finish = watch.lap();

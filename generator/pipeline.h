@@ -33,6 +33,7 @@ struct GenerateOptions {
   std::optional<double> seconds;
   uint64_t seed = 0;
   bool use_retrieval = true;  ///< false: the hits are not read at all
+  bool held_feet = true;      ///< standing feet do not slide (hold_feet)
   SamplingOptions sampling;
 };
 
@@ -82,8 +83,9 @@ class Generator {
            const std::vector<RetrievedMotion>& hits, const GenerateOptions& options,
            GenerationTimes* times = nullptr) const;
   /// Tokens of any length -> a motion of four frames each with the bone lengths
-  /// of the skeleton, smoothed by a Gaussian of 40 ms. It starts at the origin and faces +Z.
-  Motion decode(const at::Tensor& tokens) const;
+  /// of the skeleton, smoothed by a Gaussian of 40 ms. It starts at the origin and faces +Z. With
+  /// `held_feet` standing feet do not slide (hold_feet).
+  Motion decode(const at::Tensor& tokens, bool held_feet = true) const;
 
   const Retriever& retriever() const;
   const Tokenizer& tokenizer() const;

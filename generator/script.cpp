@@ -118,7 +118,7 @@ void fill_segment(const Generator& generator, TokenCanvas& canvas, int64_t begin
         generator.fill(candidate, from, end, segment.sentence, segment.hits, generate, &times);
     double score = 0;
     if (options.candidates > 1) {
-      Motion piece = generator.decode(candidate.tokens.slice(0, seen, end));
+      Motion piece = generator.decode(candidate.tokens.slice(0, seen, end), generate.held_feet);
       score = options.judge(segment.sentence, piece,
                             static_cast<int>(begin - seen) * static_cast<int>(kFramesPerToken));
     }
@@ -156,7 +156,7 @@ ScriptMotion generate_script(const Generator& generator, const std::vector<Scrip
                     segments[i].sentence});
   }
   result.tokens = canvas.tokens;
-  result.motion = slice(generator.decode(canvas.tokens), 0, frames);
+  result.motion = slice(generator.decode(canvas.tokens, options.generate.held_feet), 0, frames);
   lift_to_floor_smoothly(result.motion, generator.skeleton());
   return result;
 }

@@ -64,8 +64,8 @@ void anchor_to_feet(Motion& motion, const FootContacts& contacts, const Skeleton
       }
       Vec3 step = motion.position(t, toes[foot]) - motion.position(t - 1, toes[foot]);
       step.y() = 0;
-      if (step.norm() * skeleton.fps > fastest) continue;
-      sum += step;
+      const double speed = step.norm() * skeleton.fps;
+      sum += std::clamp(2 * (1 - speed / fastest), 0.0, 1.0) * step;
       ++standing;
     }
     if (standing > 0) slides[static_cast<size_t>(t)] = sum / standing;

@@ -17,10 +17,11 @@ FootContacts read_contacts(const Features& features, const Skeleton& skeleton);
 
 /// Moves the whole body over the ground so that standing feet do not slide: what
 /// they slide on average from frame to frame is taken out of the root's path, from
-/// the first frame on, smoothed over three frames. Steps in which a standing foot
-/// slides faster than `fastest` (m/s) are believed instead of the contacts. Heights
-/// and poses stay. Throws Error unless there are contacts for every frame.
+/// the first frame on, smoothed over three frames. A foot that slides at more than
+/// half of `fastest` (m/s) counts less, from `fastest` on nothing: such a body is on
+/// its way, and holding its feet would stop it. Heights and poses stay. Throws Error
+/// unless there are contacts for every frame.
 void anchor_to_feet(Motion& motion, const FootContacts& contacts, const Skeleton& skeleton,
-                    double fastest = 3);
+                    double fastest = 1);
 
 }  // namespace remomask

@@ -44,6 +44,8 @@ void GenerationOptions::add(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--no-retrieval", no_retrieval, "from the text alone");
+  command.add_flag("!--slide", generate.held_feet,
+                   "leave standing feet as the model made them, do not hold them in place");
   command
       .add_option("--best-of", best_of,
                   "make so many candidates, keep the one that fits the sentence best and moves "
@@ -63,11 +65,11 @@ GenerationWorkspace::GenerationWorkspace(const std::map<std::string, ModelStage>
   const SamplingOptions& sampling = options.generate.sampling;
   identity_ = fmt::format(
       "model {} steps {} guidance {:g} temperature {:g} top {:g} corrections {} "
-      "residual guidance {:g} residual temperature {:g} retrieval {} best of {} length {}",
+      "residual guidance {:g} residual temperature {:g} retrieval {} best of {} length {} feet {}",
       content_hash(digest), sampling.steps, sampling.guidance, sampling.temperature,
       sampling.top_share, sampling.correction_rounds, sampling.residual_guidance,
       sampling.residual_temperature, options.no_retrieval ? "off" : "on", options.best_of,
-      options.length);
+      options.length, options.generate.held_feet ? "held" : "free");
 }
 
 GenerateOptions GenerationWorkspace::generate_options(uint64_t seed) const {

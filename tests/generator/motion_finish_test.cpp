@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace remomask {
 namespace {
 
@@ -27,6 +29,40 @@ TEST(MotionFinish, BonesGetTheirLengthsAndKeepDirections) {
   const Motion expected = stretched_rest(1, 1.2);
   for (size_t i = 0; i < motion.positions.size(); ++i) {
     EXPECT_NEAR(motion.positions[i], expected.positions[i], 1e-5);
+  }
+}
+
+TEST(MotionFinish, HeldFeetStandAndKeepTheBones) {
+  const Skeleton& skeleton = humanml_skeleton();
+  // The body stands, glides by 2 cm a frame, and one foot slides 1 cm a frame on its own.
+  const Motion rest = stretched_rest(1, 0);
+  const double height = -rest.position(0, skeleton.left_feet.back()).y() + 0.01;
+  Motion motion(20, skeleton.joints());
+  for (int t = 0; t < motion.frames; ++t) {
+    for (int joint = 0; joint < motion.joints; ++joint) {
+      motion.set(t, joint, rest.position(0, joint) + Vec3(0, height, 0.02 * t));
+    }
+    for (const int joint : skeleton.left_feet) motion.at(t, joint)[2] += 0.01f * t;
+  }
+  impose_bone_lengths(motion, skeleton);
+  Features features(motion.frames, skeleton.feature_dim());
+  for (int t = 0; t < motion.frames; ++t) {
+    for (const int back : {1, 3}) features.row(t)[features.dim - back] = 1;
+  }
+  const auto slide = [&](const Motion& m, int toe) {
+    return std::abs(m.position(19, toe).z() - m.position(0, toe).z());
+  };
+  const int left = skeleton.left_feet.back(), right = skeleton.right_feet.back();
+  ASSERT_GT(slide(motion, right), 0.35);
+  hold_feet(motion, features, skeleton);
+  EXPECT_LT(slide(motion, left), 0.02);
+  EXPECT_LT(slide(motion, right), 0.02);
+  for (int t = 0; t < motion.frames; ++t) {
+    for (int joint = 1; joint < motion.joints; ++joint) {
+      const double length =
+          (motion.position(t, joint) - motion.position(t, skeleton.parents[joint])).norm();
+      EXPECT_NEAR(length, skeleton.bone_lengths[joint], 1e-4) << joint;
+    }
   }
 }
 

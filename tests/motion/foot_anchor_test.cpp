@@ -42,9 +42,13 @@ double largest_difference(const Motion& a, const Motion& b) {
 TEST(FootAnchor, ABodyThatGlidesOnItsFeetStands) {
   const Motion glide = gliding(10, {0.03, 0, 0.04});
   Motion anchored = glide;
-  anchor_to_feet(anchored, always(10, true, false), humanml_skeleton());
+  anchor_to_feet(anchored, always(10, true, false), humanml_skeleton(), /*fastest=*/2);
   EXPECT_LT(largest_difference(anchored, gliding(10, Vec3::Zero())), 1e-5);
-  // Without contact, or faster than believed (1 m/s is 5 cm a frame), it goes on.
+  // At three quarters of the limit half of it is taken out.
+  Motion slowed = glide;
+  anchor_to_feet(slowed, always(10, true, true), humanml_skeleton(), /*fastest=*/4. / 3);
+  EXPECT_LT(largest_difference(slowed, gliding(10, {0.015, 0, 0.02})), 1e-5);
+  // Without contact, or as fast as a body on its way (1 m/s is 5 cm a frame), it goes on.
   Motion flying = glide;
   anchor_to_feet(flying, always(10, false, false), humanml_skeleton());
   EXPECT_EQ(flying.positions, glide.positions);
