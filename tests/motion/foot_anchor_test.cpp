@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "tests/motion/support.h"
 
 namespace remomask {
 namespace {
@@ -29,14 +30,6 @@ Motion gliding(int frames, const Vec3& step) {
 
 FootContacts always(int frames, bool left, bool right) {
   return FootContacts(static_cast<size_t>(frames), {left, right});
-}
-
-double largest_difference(const Motion& a, const Motion& b) {
-  double largest = 0;
-  for (size_t i = 0; i < a.positions.size(); ++i) {
-    largest = std::max(largest, std::abs(static_cast<double>(a.positions[i]) - b.positions[i]));
-  }
-  return largest;
 }
 
 TEST(FootAnchor, ABodyThatGlidesOnItsFeetStands) {
