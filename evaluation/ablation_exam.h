@@ -14,9 +14,6 @@
 
 namespace remomask {
 
-/// A content is rare below so many training clips (mirror twins not counted).
-inline constexpr int kRareClips = 20;
-
 /// How well the motions of some prompts answer them.
 struct ExamFigures {
   int prompts = 0;

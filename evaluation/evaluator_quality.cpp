@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "evaluation/label_prompts.h"
 #include "generator/tokenizer_metrics.h"
 #include "text/caption.h"
 

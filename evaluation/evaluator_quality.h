@@ -60,9 +60,6 @@ struct EvaluatorQuality {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EvaluatorQuality, subsets, fid_to_train, sides)
 
-/// Contents with fewer training clips are "rare".
-inline constexpr int kRareClips = 20;
-
 /// Figures of `clips` (without captions: left out); contents are looked for among
 /// train, val and the clips themselves. `sides` stays empty.
 EvaluatorQuality measure_evaluator(const Evaluator& evaluator,

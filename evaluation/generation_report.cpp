@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "db/training_set.h"
+#include "evaluation/label_prompts.h"
 
 namespace remomask {
 

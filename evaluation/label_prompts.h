@@ -8,6 +8,9 @@
 
 namespace remomask {
 
+/// A content is rare below so many training clips (mirror twins not counted).
+inline constexpr int kRareClips = 20;
+
 /// One text to generate from, with the clip that it was written for.
 struct LabelPrompt {
   int64_t clip_id = 0;
