@@ -123,7 +123,7 @@ ModelStage retriever_stage(BmmModel& model, const RetrieverConfig& config) {
 
 RetrieverTrainingOptions::RetrieverTrainingOptions(const std::string& preset) {
   trainer.stage_name = "retriever";
-  trainer.steps = 900;
+  trainer.steps = 1800;
   trainer.learning_rate = 1e-3;
   trainer.warmup_steps = 100;
   trainer.weight_decay = 0.01;
