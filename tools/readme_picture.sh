@@ -1,5 +1,6 @@
 #!/bin/sh
-# Draws docs/generated.png, the picture of the README, with the shipped model.
+# Draws docs/generated.png, the picture of the README, with the shipped model; none of the
+# prompts is a caption of the training data.
 #   tools/readme_picture.sh [OUTPUT.png]
 set -eu
 cd "$(dirname "$0")/.."
@@ -9,7 +10,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 number=0
 for prompt in "a person walks forward with energy" "someone raises both hands above the head" \
-  "a person runs forward" "the person bows politely"; do
+  "somebody runs forward" "a man waves with his left hand"; do
   number=$((number + 1))
   "$remomask" --quiet generate "$prompt" --seconds 4.4 --seed 3 -o "$folder/$number.bvh" >/dev/null
 done
