@@ -25,19 +25,19 @@ fi
 
 shipped=$prefix/share/remomask
 "$work/examples/search_library_example" "$shipped/base.safetensors" "$shipped/procedural.sqlite" \
-  "a person waves" | tee "$work/found"
+  "a person waves the right hand" | tee "$work/found"
 grep -q '^1\. .*wav' "$work/found"
 "$work/examples/generate_motion_example" "$shipped/base.safetensors" \
-  "$shipped/procedural.sqlite" "a person waves" "$work/motion.bvh" | tee "$work/made"
+  "$shipped/procedural.sqlite" "a person waves the right hand" "$work/motion.bvh" | tee "$work/made"
 grep -q '^from: .*wav' "$work/made"
 grep -q '^Frames: 40' "$work/motion.bvh"
 
 cd "$work"
-"$prefix/bin/remomask" search "a person waves" -k 1 >"$work/found"
+"$prefix/bin/remomask" search "a person waves the right hand" -k 1 >"$work/found"
 grep -q 'wav' "$work/found"
 # It was the installed database, not that of the source tree.
 echo damaged >"$shipped/procedural.sqlite"
-if "$prefix/bin/remomask" search "a person waves" >"$work/found" 2>&1; then
+if "$prefix/bin/remomask" search "a person waves the right hand" >"$work/found" 2>&1; then
   echo "the installed program reads other files than the installed ones" >&2
   exit 1
 fi
