@@ -31,6 +31,7 @@ Condition random_unit_condition(const SstaConfig& config, int64_t batch) {
           unit({batch, hits, width}),
           torch::rand({batch, hits}),
           torch::ones({batch, hits}, torch::kBool),
+          torch::zeros({batch, 0, 0, config.rows}, torch::kLong),  // hits are vectors only
           torch::ones({batch}, torch::kBool),
           torch::ones({batch}, torch::kBool)};
 }
