@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/machine.h"
 #include "motion/canonical.h"
 #include "motion/caption_mirror.h"
@@ -152,6 +153,16 @@ std::vector<TrainingClip> load_training_set(const Database& database,
   }
   if (failure) std::rethrow_exception(failure);
   return result;
+}
+
+std::string training_set_identity(const std::vector<TrainingClip>& clips) {
+  std::string text;
+  for (const TrainingClip& clip : clips) {
+    text += clip.name + '\t' + std::to_string(clip.features.frames) + '\t';
+    for (const std::string& caption : clip.captions) text += caption + '\t';
+    text += clip.meaning + '\n';
+  }
+  return content_hash(text);
 }
 
 }  // namespace remomask

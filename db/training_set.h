@@ -43,4 +43,7 @@ std::string clip_content(const Clip& clip);
 std::vector<TrainingClip> load_training_set(const Database& database,
                                             const TrainingSetOptions& options = {});
 
+/// Hash of what a training sees of the clips: names, lengths, captions, meanings.
+std::string training_set_identity(const std::vector<TrainingClip>& clips);
+
 }  // namespace remomask

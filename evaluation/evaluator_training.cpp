@@ -6,12 +6,10 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/hash.h"
 #include "base/random.h"
 #include "evaluation/evaluator_network.h"
 #include "evaluation/evaluator_quality.h"
-#include "retriever/training.h"
-#include "text/caption.h"
+#include "retriever/training_batches.h"
 
 namespace remomask {
 
@@ -22,25 +20,10 @@ constexpr int kValidationDraws = 4;
 constexpr int64_t kValidationBatch = 32;
 constexpr double kCodePenalty = 0.001, kSmoothPenalty = 0.001;
 
-std::string evaluator_set_identity(const std::vector<TrainingClip>& clips) {
-  std::string text;
-  for (const TrainingClip& clip : clips) {
-    text += clip.name + '\t' + std::to_string(clip.features.frames) + '\t';
-    for (const std::string& caption : clip.captions) text += caption + '\t';
-    text += clip.meaning + '\n';
-  }
-  return content_hash(text);
-}
-
 std::vector<TrainingClip> evaluator_clips(const std::vector<TrainingClip>& clips) {
-  std::vector<TrainingClip> result;
-  for (const TrainingClip& clip : clips) {
-    if (clip.features.frames < kFramesPerMovement) continue;
-    TrainingClip kept = clip;
-    std::erase_if(kept.captions,
-                  [](const std::string& text) { return normalise_caption(text).empty(); });
-    if (!kept.captions.empty()) result.push_back(std::move(kept));
-  }
+  std::vector<TrainingClip> result = captioned_clips(clips);
+  std::erase_if(result,
+                [](const TrainingClip& clip) { return clip.features.frames < kFramesPerMovement; });
   return result;
 }
 
@@ -152,14 +135,14 @@ at::Tensor shifted_pairs(int64_t batch, int64_t shifts, CounterRandom& random) {
 class PairSource {
  public:
   PairSource(const std::vector<TrainingClip>& clips, const EvaluatorTrainingOptions& options)
-      : clips_(clips), options_(options) {}
+      : clips_(clips), options_(options), batches_(clips, options.batch, options.trainer.seed) {}
 
   StepResult step(EvaluatorNetwork& network, int64_t step) {
     CounterRandom random(options_.trainer.seed, mix_seed(kPairStream, static_cast<uint64_t>(step)));
     std::vector<const TrainingClip*> chosen;
     std::vector<std::string> captions;
     std::vector<EvaluatorCrop> crops;
-    for (const size_t index : members(static_cast<uint64_t>(step))) {
+    for (const size_t index : batches_.at_step(step)) {
       const TrainingClip& clip = clips_[index];
       chosen.push_back(&clip);
       captions.push_back(clip.captions[random.below(clip.captions.size())]);
@@ -196,22 +179,9 @@ class PairSource {
     }
   }
 
-  const std::vector<size_t>& members(uint64_t step) {
-    if (batches_.empty()) load_epoch(0);
-    const uint64_t epoch = step / batches_.size();  // every epoch has equally many batches
-    if (epoch != epoch_) load_epoch(epoch);
-    return batches_[step % batches_.size()];
-  }
-
-  void load_epoch(uint64_t epoch) {
-    batches_ = epoch_batches(clips_, options_.batch, options_.trainer.seed, epoch);
-    epoch_ = epoch;
-  }
-
   const std::vector<TrainingClip>& clips_;
   const EvaluatorTrainingOptions& options_;
-  std::vector<std::vector<size_t>> batches_;
-  uint64_t epoch_ = 0;
+  EpochBatches batches_;
 };
 
 ModelStage evaluator_stage(const EvaluatorConfig& config, const TensorMap& tensors) {
@@ -237,8 +207,8 @@ nlohmann::json evaluator_run_identity(const EvaluatorConfig& config,
                                       const std::vector<TrainingClip>& val,
                                       const EvaluatorTrainingOptions& options) {
   return {{"config", config},
-          {"train", evaluator_set_identity(train)},
-          {"val", evaluator_set_identity(val)},
+          {"train", training_set_identity(train)},
+          {"val", training_set_identity(val)},
           {"movement_steps", options.movement.steps},
           {"movement_batch", options.movement_batch},
           {"window", options.window},

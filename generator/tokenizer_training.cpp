@@ -51,21 +51,29 @@ nlohmann::json tokenizer_run_identity(const TokenizerConfig& config,
                                       const std::vector<const Features*>& clips) {
   int64_t frames = 0;
   for (const Features* clip : clips) frames += clip->frames;
+  nlohmann::json identity = options_document(options);
+  identity["config"] = config;
+  identity["clips"] = clips.size();
+  identity["frames"] = frames;
+  return identity;
+}
+
+}  // namespace
+
+nlohmann::json options_document(const TokenizerTrainingOptions& options) {
   const CodebookTraining& codebooks = options.codebooks;
-  return {{"config", config},
-          {"loss", options.loss},
+  return {{"loss", options.loss},
           {"commitment", options.commitment},
           {"window", options.window},
           {"batch_frames", options.batch_frames},
           {"long_share", options.long_share},
           {"codebooks",
-           {codebooks.decay, codebooks.reset_every, codebooks.dead_share, codebooks.level_dropout,
-            codebooks.sample_temperature}},
-          {"clips", clips.size()},
-          {"frames", frames}};
+           {{"decay", codebooks.decay},
+            {"reset_every", codebooks.reset_every},
+            {"dead_share", codebooks.dead_share},
+            {"level_dropout", codebooks.level_dropout},
+            {"sample_temperature", codebooks.sample_temperature}}}};
 }
-
-}  // namespace
 
 FeatureStatistics feature_statistics(const std::vector<const Features*>& clips,
                                      const Skeleton& skeleton) {

@@ -33,6 +33,9 @@ struct TokenizerTrainingOptions {
   }
 };
 
+/// What decides what is learnt, but for TrainerOptions: identifies a run.
+nlohmann::json options_document(const TokenizerTrainingOptions& options);
+
 struct FeatureStatistics {
   at::Tensor mean;       ///< [D]
   at::Tensor deviation;  ///< [D], the mean over each group of columns (root yaw, root velocity,

@@ -87,42 +87,11 @@ nlohmann::json trainer_description(const TrainerOptions& options) {
           {"seed", options.seed}};
 }
 
-nlohmann::json transformer_description(const TransformerTrainingOptions& options) {
-  return {{"batch", options.batch},
-          {"noise_hits", options.noise_hits},
-          {"text_drop", options.text_drop},
-          {"history_corruption", options.history_corruption}};
-}
-
 nlohmann::json training_description(const TrainingRecipe& recipe, const std::string& stage) {
   if (stage == "text") return {{"batch", recipe.text_training.batch}};
-  if (stage == "retriever") {
-    const RetrieverTrainingOptions& options = recipe.retriever_training;
-    return {{"batch", options.batch},
-            {"queues", queues_name(options.queues)},
-            {"queue_size", options.queue_size},
-            {"momentum", options.momentum},
-            {"temperature", options.temperature},
-            {"part_weight", options.part_weight},
-            {"least_crop", options.least_crop},
-            {"patch_keep", options.patch_keep},
-            {"word_drop", options.word_drop},
-            {"same_meaning_weight", options.same_meaning_weight}};
-  }
-  if (stage == "tokenizer") {
-    const TokenizerTrainingOptions& options = recipe.tokenizer_training;
-    return {{"loss", options.loss},
-            {"commitment", options.commitment},
-            {"window", options.window},
-            {"batch_frames", options.batch_frames},
-            {"long_share", options.long_share},
-            {"decay", options.codebooks.decay},
-            {"reset_every", options.codebooks.reset_every},
-            {"level_dropout", options.codebooks.level_dropout},
-            {"sample_temperature", options.codebooks.sample_temperature}};
-  }
-  return transformer_description(stage == "masked" ? recipe.masked_training
-                                                   : recipe.residual_training);
+  if (stage == "retriever") return options_document(recipe.retriever_training);
+  if (stage == "tokenizer") return options_document(recipe.tokenizer_training);
+  return options_document(stage == "masked" ? recipe.masked_training : recipe.residual_training);
 }
 
 nlohmann::json stage_config(const TrainingRecipe& recipe, const std::string& stage) {

@@ -245,13 +245,11 @@ StepResult step_result(const TokenLoss& loss) { return {loss.loss, {{"accuracy",
 
 nlohmann::json run_identity(const nlohmann::json& config, const GeneratorData& data,
                             const TransformerTrainingOptions& options) {
-  return {{"config", config},
-          {"clips", data.train.clips.size()},
-          {"captions", data.captions.offsets.size() - 1},
-          {"batch", options.batch},
-          {"noise_hits", options.noise_hits},
-          {"text_drop", options.text_drop},
-          {"history_corruption", options.history_corruption}};
+  nlohmann::json identity = options_document(options);
+  identity["config"] = config;
+  identity["clips"] = data.train.clips.size();
+  identity["captions"] = data.captions.offsets.size() - 1;
+  return identity;
 }
 
 void check_training_data(const GeneratorData& data) {
@@ -288,6 +286,13 @@ nlohmann::json run_training(Model& model, const GeneratorData& data,
 }
 
 }  // namespace
+
+nlohmann::json options_document(const TransformerTrainingOptions& options) {
+  return {{"batch", options.batch},
+          {"noise_hits", options.noise_hits},
+          {"text_drop", options.text_drop},
+          {"history_corruption", options.history_corruption}};
+}
 
 ModelStage train_masked(MaskedConfig config, const GeneratorData& data,
                         const TransformerTrainingOptions& options, const Monitor& monitor) {

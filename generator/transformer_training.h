@@ -18,6 +18,9 @@ struct TransformerTrainingOptions {
   size_t validation_clips = 256;  ///< at most so many, evenly spread
 };
 
+/// What decides what is learnt, but for TrainerOptions: identifies a run.
+nlohmann::json options_document(const TransformerTrainingOptions& options);
+
 /// Trains the masked transformer on the base level. Masks (masking.h), drops
 /// of conditions, hits, captions and frame offsets are functions of (seed,
 /// step, sample). Validation reports loss and accuracy on `val` with both

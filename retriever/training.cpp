@@ -3,24 +3,21 @@
 #include <torch/utils.h>
 
 #include <algorithm>
-#include <deque>
 #include <functional>
-#include <set>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/random.h"
 #include "retriever/momentum.h"
 #include "retriever/retrieval_metrics.h"
+#include "retriever/training_batches.h"
 #include "text/caption.h"
 
 namespace remomask {
 
 namespace {
 
-constexpr uint64_t kEpochStream = 0x65706f6368, kCropStream = 0x63726f70;
-/// Batches that are sorted by length together.
-constexpr size_t kBatchesByLength = 8;
+constexpr uint64_t kCropStream = 0x63726f70;
 
 int64_t text_identity(const std::string& text) {
   return static_cast<int64_t>(std::stoull(content_hash(text).substr(0, 16), nullptr, 16));
@@ -30,28 +27,6 @@ int64_t text_identity(const std::string& text) {
 int64_t meaning_identity(const TrainingClip& clip) {
   return text_identity(clip.meaning.empty() ? "group " + std::to_string(clip.group)
                                             : "meaning " + clip.meaning);
-}
-
-/// What tells one training set from another, for the checkpoint.
-std::string set_identity(const std::vector<TrainingClip>& clips) {
-  std::string text;
-  for (const TrainingClip& clip : clips) {
-    text += clip.name + '\t' + std::to_string(clip.features.frames) + '\t';
-    for (const std::string& caption : clip.captions) text += caption + '\t';
-    text += clip.meaning + '\n';
-  }
-  return content_hash(text);
-}
-
-std::vector<TrainingClip> with_captions(const std::vector<TrainingClip>& clips) {
-  std::vector<TrainingClip> result;
-  for (const TrainingClip& clip : clips) {
-    TrainingClip kept = clip;
-    std::erase_if(kept.captions,
-                  [](const std::string& text) { return normalise_caption(text).empty(); });
-    if (!kept.captions.empty()) result.push_back(std::move(kept));
-  }
-  return result;
 }
 
 nlohmann::json fresh_text_tower(const std::vector<TrainingClip>& clips, const std::string& preset) {
@@ -69,10 +44,13 @@ class BatchSource {
  public:
   BatchSource(const std::vector<TrainingClip>& clips, const RetrieverConfig& config,
               const RetrieverTrainingOptions& options)
-      : clips_(clips), config_(config), options_(options) {}
+      : clips_(clips),
+        config_(config),
+        options_(options),
+        batches_(clips, options.batch, options.trainer.seed) {}
 
   PairBatch batch(int64_t step, RetrieverModel& model) {
-    const std::vector<size_t>& chosen = members(static_cast<uint64_t>(step));
+    const std::vector<size_t>& chosen = batches_.at_step(step);
     std::vector<std::string> captions;
     std::vector<MotionCrop> online, whole;
     std::vector<int64_t> groups, texts, meanings;
@@ -96,23 +74,10 @@ class BatchSource {
   }
 
  private:
-  const std::vector<size_t>& members(uint64_t step) {
-    if (batches_.empty()) load_epoch(0);
-    const uint64_t epoch = step / batches_.size();  // every epoch has equally many batches
-    if (epoch != epoch_) load_epoch(epoch);
-    return batches_[step % batches_.size()];
-  }
-
-  void load_epoch(uint64_t epoch) {
-    batches_ = epoch_batches(clips_, options_.batch, options_.trainer.seed, epoch);
-    epoch_ = epoch;
-  }
-
   const std::vector<TrainingClip>& clips_;
   const RetrieverConfig& config_;
   const RetrieverTrainingOptions& options_;
-  std::vector<std::vector<size_t>> batches_;
-  uint64_t epoch_ = 0;
+  EpochBatches batches_;
 };
 
 ModelStage retriever_stage(BmmModel& model, const RetrieverConfig& config) {
@@ -146,48 +111,24 @@ RetrieverTrainingOptions::RetrieverTrainingOptions(const std::string& preset) {
   }
 }
 
-std::vector<std::vector<size_t>> epoch_batches(const std::vector<TrainingClip>& clips,
-                                               int64_t batch, uint64_t seed, uint64_t epoch) {
-  CounterRandom random(seed, mix_seed(kEpochStream, epoch));
-  std::vector<size_t> order = random.permutation(clips.size());
-  const size_t size = std::min(static_cast<size_t>(batch), clips.size());
-  const size_t count = size == 0 ? 0 : clips.size() / size;
-  for (size_t first = 0; first < order.size(); first += kBatchesByLength * size) {
-    const size_t last = std::min(order.size(), first + kBatchesByLength * size);
-    std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(first),
-                     order.begin() + static_cast<std::ptrdiff_t>(last), [&](size_t a, size_t b) {
-                       return clips[a].features.frames < clips[b].features.frames;
-                     });
-  }
-  std::vector<std::vector<size_t>> batches;
-  std::deque<size_t> waiting(order.begin(), order.end());
-  while (batches.size() < count) {
-    std::vector<size_t> members, deferred;
-    std::set<int> groups;
-    while (members.size() < size && !waiting.empty()) {
-      const size_t index = waiting.front();
-      waiting.pop_front();
-      const bool fresh = groups.insert(clips[index].group).second;
-      (fresh ? members : deferred).push_back(index);
-    }
-    // Groups are used up: the rest must repeat them.
-    while (members.size() < size) {
-      members.push_back(deferred.back());
-      deferred.pop_back();
-    }
-    waiting.insert(waiting.begin(), deferred.begin(), deferred.end());
-    batches.push_back(std::move(members));
-  }
-  std::vector<std::vector<size_t>> shuffled;
-  for (const size_t i : random.permutation(batches.size())) shuffled.push_back(batches[i]);
-  return shuffled;
+nlohmann::json options_document(const RetrieverTrainingOptions& options) {
+  return {{"batch", options.batch},
+          {"queues", queues_name(options.queues)},
+          {"queue_size", options.queue_size},
+          {"momentum", options.momentum},
+          {"temperature", options.temperature},
+          {"part_weight", options.part_weight},
+          {"least_crop", options.least_crop},
+          {"patch_keep", options.patch_keep},
+          {"word_drop", options.word_drop},
+          {"same_meaning_weight", options.same_meaning_weight}};
 }
 
 ModelStage train_retriever(const std::vector<TrainingClip>& train,
                            const std::vector<TrainingClip>& val,
                            const std::optional<ModelStage>& text_stage, RetrieverConfig config,
                            const RetrieverTrainingOptions& options, const Monitor& monitor) {
-  const std::vector<TrainingClip> clips = with_captions(train), val_clips = with_captions(val);
+  const std::vector<TrainingClip> clips = captioned_clips(train), val_clips = captioned_clips(val);
   if (clips.size() < 2) {
     throw Error("the retriever needs at least 2 training clips with captions, there are " +
                 std::to_string(clips.size()) + "; import a captions file");
@@ -207,19 +148,10 @@ ModelStage train_retriever(const std::vector<TrainingClip>& train,
   model.online().motion_encoder().set_statistics(features);
   update_twin(model.twin(), model.online(), 0);
 
-  const nlohmann::json identity = {{"config", config},
-                                   {"train", set_identity(clips)},
-                                   {"batch", options.batch},
-                                   {"queues", queues_name(options.queues)},
-                                   {"queue_size", options.queue_size},
-                                   {"momentum", options.momentum},
-                                   {"temperature", options.temperature},
-                                   {"part_weight", options.part_weight},
-                                   {"least_crop", options.least_crop},
-                                   {"patch_keep", options.patch_keep},
-                                   {"word_drop", options.word_drop},
-                                   {"same_meaning_weight", options.same_meaning_weight},
-                                   {"text", text_stage ? stage_hash(*text_stage) : ""}};
+  nlohmann::json identity = options_document(options);
+  identity["config"] = config;
+  identity["train"] = training_set_identity(clips);
+  identity["text"] = text_stage ? stage_hash(*text_stage) : "";
   Trainer trainer(model, options.trainer, identity);
   if (!val_clips.empty()) {
     trainer.set_validation(options.validation_every, [&](int64_t) {

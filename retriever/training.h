@@ -31,12 +31,8 @@ struct RetrieverTrainingOptions {
   explicit RetrieverTrainingOptions(const std::string& preset = "base");
 };
 
-/// Clips of one epoch in batches: no two clips of a group in a batch as long as
-/// the groups last; clips of similar length together, so that a batch has no
-/// easy negatives by length. A function of (seed, epoch). What does not fill a
-/// batch is left out; fewer clips than a batch are one batch.
-std::vector<std::vector<size_t>> epoch_batches(const std::vector<TrainingClip>& clips,
-                                               int64_t batch, uint64_t seed, uint64_t epoch);
+/// What decides what is learnt, but for TrainerOptions: identifies a run.
+nlohmann::json options_document(const RetrieverTrainingOptions& options);
 
 /// Trains text tower and motion encoder together by bidirectional momentum
 /// contrast and returns ModelStage "retriever" (online weights averaged over

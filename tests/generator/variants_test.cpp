@@ -41,6 +41,21 @@ TEST(Variants, ChangeOneThing) {
   EXPECT_EQ(changed_stages("quantizer-dropout-0"), Stages{"tokenizer"});
 }
 
+TEST(Variants, EveryOptionOfTheCodebooksTellsStagesApart) {
+  const TrainingRecipe recipe = training_recipe("tiny");
+  const auto differs = [&](auto change) {
+    TrainingRecipe other = recipe;
+    change(other.tokenizer_training.codebooks);
+    return stage_description(recipe, "tokenizer") != stage_description(other, "tokenizer");
+  };
+  EXPECT_FALSE(differs([](CodebookTraining&) {}));
+  EXPECT_TRUE(differs([](CodebookTraining& codebooks) { codebooks.decay = 0.5; }));
+  EXPECT_TRUE(differs([](CodebookTraining& codebooks) { codebooks.reset_every = 7; }));
+  EXPECT_TRUE(differs([](CodebookTraining& codebooks) { codebooks.dead_share = 0.5; }));
+  EXPECT_TRUE(differs([](CodebookTraining& codebooks) { codebooks.level_dropout = 0.9; }));
+  EXPECT_TRUE(differs([](CodebookTraining& codebooks) { codebooks.sample_temperature = 1; }));
+}
+
 TEST(Variants, UnknownOnesAreRefused) {
   for (const char* name :
        {"no-legs", "levels-0", "levels-9", "levels-", "levels-2x", "quantizer-dropout-95", ""}) {

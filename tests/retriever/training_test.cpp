@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "retriever/retrieval_metrics.h"
+#include "retriever/training_batches.h"
 #include "retriever_test_tools.h"
 #include "text/masked_words.h"
 
