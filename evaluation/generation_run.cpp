@@ -55,6 +55,7 @@ nlohmann::json make_protocol(const Database& database, const JudgeGallery& galle
           {"generator", options.generator},
           {"prompts", options.prompts},
           {"prompt_split", options.prompt_split},
+          {"draw", options.draw},
           {"seed", options.seed},
           {"repeats", options.repeats},
           {"modality_prompts", options.modality_prompts},
@@ -177,7 +178,8 @@ GenerationRun run_generation(const Database& database, const JudgeGallery& galle
   if (options.results_path.empty()) throw Error("the evaluation needs a path for its results");
   GenerationRun run;
   run.prompts =
-      choose_label_prompts(database.clips(), options.prompt_split, options.prompts, options.seed);
+      choose_label_prompts(database.clips(), options.prompt_split, options.prompts,
+                                     options.seed, parse_prompt_draw(options.draw));
   run.jobs = make_jobs(run.prompts, options);
   run.protocol = make_protocol(database, gallery, judge, evaluator, options);
   GenerationResults results(options.results_path, run.protocol);

@@ -23,6 +23,7 @@ struct GenerationRunOptions {
   int prompts = 200;  ///< 0: every clip of the split once
   uint64_t seed = 1;
   std::string prompt_split = "test";
+  std::string draw = "even";  ///< see parse_prompt_draw()
   std::vector<std::string> gallery_splits = {"train", "val", "test"};
   int repeats = 1;            ///< generations of every prompt, each with its own seed
   int modality_prompts = 10;  ///< the first prompts, for MultiModality; 0: not measured

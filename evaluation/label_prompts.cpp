@@ -18,13 +18,21 @@ struct ContentClips {
 
 }  // namespace
 
+PromptDraw parse_prompt_draw(const std::string& name) {
+  if (name == "even") return PromptDraw::even;
+  if (name == "uniform") return PromptDraw::uniform;
+  throw Error("unknown draw of prompts \"" + name + "\"; use even or uniform");
+}
+
 std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
-                                              const std::string& split, int count, uint64_t seed) {
+                                              const std::string& split, int count, uint64_t seed,
+                                              PromptDraw draw) {
   std::map<std::string, std::vector<const Clip*>> by_content;
   for (const Clip& clip : clips) {
     if (clip.split != split || clip.mirrored || clip.captions.empty()) continue;
     if (const std::string content = clip_content(clip); !content.empty()) {
-      by_content[content].push_back(&clip);
+      // A uniform draw has all clips in one class, whatever their content.
+      by_content[draw == PromptDraw::even ? content : ""].push_back(&clip);
     }
   }
   if (by_content.empty()) {
@@ -43,7 +51,7 @@ std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
   const size_t wanted = count > 0 ? static_cast<size_t>(count) : usable;
   std::vector<LabelPrompt> prompts;
   for (size_t turn = 0; prompts.size() < wanted; ++turn) {
-    auto& [content, source] = turns[turn % turns.size()];
+    ContentClips& source = turns[turn % turns.size()].second;
     if (count == 0 && source.taken == source.clips.size()) continue;
     const Clip& clip = *source.clips[source.taken % source.clips.size()];
     const size_t round = source.taken / source.clips.size();
@@ -52,7 +60,7 @@ std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
     const size_t first = CounterRandom(mix_seed(seed, static_cast<uint64_t>(clip.id), 1))
                              .below(clip.captions.size());
     prompts.push_back({clip.id, clip.name, clip.group,
-                       clip.captions[(first + round) % clip.captions.size()], content, unseen,
+                       clip.captions[(first + round) % clip.captions.size()], clip_content(clip), unseen,
                        clip.frames, mix_seed(seed, prompts.size(), 2)});
   }
   return prompts;

@@ -23,12 +23,18 @@ struct LabelPrompt {
   uint64_t seed = 0;    ///< for the generation
 };
 
-/// `count` prompts from the clips of `split`, spread over the contents: in turn
+/// even: spread over the contents, so that rare ones weigh as much as common ones;
+/// uniform: every clip is equally likely.
+enum class PromptDraw { even, uniform };
+PromptDraw parse_prompt_draw(const std::string& name);
+
+/// `count` prompts from the clips of `split`. Uniform: in random order. Even: in turn
 /// through the contents (alphabetical), each giving its clips in random order;
 /// clips come again, with another caption where they have one, when all were
 /// taken; `count` 0: every clip once. Mirror copies and clips without content or
 /// caption are left out. A function of the arguments alone. Throws Error when no clip is left.
 std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
-                                              const std::string& split, int count, uint64_t seed);
+                                              const std::string& split, int count, uint64_t seed,
+                                              PromptDraw draw = PromptDraw::even);
 
 }  // namespace remomask

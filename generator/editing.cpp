@@ -81,7 +81,8 @@ Edited edit_motion(const Generator& generator, const Motion& original,
   const at::Tensor changed = canvas.known.all(1).logical_not().nonzero().reshape({-1});
   result.hits_used =
       generator.fill(canvas, changed[0].item<int64_t>(), changed[-1].item<int64_t>() + 1, prompt,
-                     hits, options.generate, &result.times);
+                     hits, options.generate, &result.times)
+          .hits_used;
   const Motion made = slice(generator.decode(canvas.tokens), 0, result.mask.frames());
   result.motion =
       splice_motion(original, made, result.mask, skeleton, options.splice, &result.splice);

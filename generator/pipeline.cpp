@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "generator/draft.h"
 #include "generator/motion_finish.h"
 #include "generator/token_windows.h"
 #include "generator/tokenizer_network.h"
@@ -20,6 +21,9 @@ namespace {
 // Frames. Tokens of neighbouring patches do not quite fit: without it the jerk of
 // generated motions is more than twice that of real ones.
 constexpr double kDecodeSmoothing = 0.8;
+
+// Token frames beside known motion that follow nothing: the seam is the transformer's.
+constexpr int64_t kSeamFrames = 2;
 
 constexpr double kDefaultSeconds = 5, kLeastSeconds = 1, kMostEstimated = 9.8, kMostSeconds = 600;
 
@@ -98,20 +102,23 @@ struct Generator::Impl {
     need_equal(upper.text_width, retriever.text_width(), "the width of the text states");
   }
 
+  /// All levels of a motion, int64 [frames / 4, rows, levels].
+  at::Tensor encode(const Motion& motion) const {
+    const FeatureMode mode = parse_feature_mode(tokenizer.config().feature_mode);
+    return tokenizer.encode(extract_features_all_frames(motion, skeleton, mode));
+  }
+
   /// Base tokens of the best hits [1, s, T, rows], -1 where no frame is.
   at::Tensor hit_tokens(const std::vector<RetrievedMotion>& hits) const {
     const auto count =
         std::min<int64_t>(masked->config().sequence_hits, static_cast<int64_t>(hits.size()));
-    const FeatureMode mode = parse_feature_mode(tokenizer.config().feature_mode);
     std::vector<at::Tensor> maps;
     int64_t longest = 0;
     for (int64_t i = 0; i < count; ++i) {
       const auto& poses = hits[static_cast<size_t>(i)].poses;
       at::Tensor map = torch::empty({0, tokenizer.config().rows}, torch::kLong);
       if (poses && poses->frames >= 4) {
-        map = tokenizer.encode(extract_features_all_frames(*poses, skeleton, mode))
-                  .select(2, 0)
-                  .slice(0, 0, kLongestTokenMap);
+        map = encode(*poses).select(2, 0).slice(0, 0, kLongestTokenMap);
       }
       longest = std::max(longest, map.size(0));
       maps.push_back(map);
@@ -145,6 +152,38 @@ struct Generator::Impl {
     result.use_text = torch::full({1}, !prompt.empty(), torch::kBool);
     result.use_retrieval = torch::full({1}, count > 0, torch::kBool);
     return result;
+  }
+
+  /// The hit that a stretch of `frames` token frames follows, if any.
+  const RetrievedMotion* draft_hit(const std::vector<RetrievedMotion>& hits, int64_t frames,
+                                   uint64_t seed) const {
+    std::vector<DraftCandidate> candidates;
+    for (const RetrievedMotion& hit : hits) {
+      candidates.push_back({hit.similarity, hit.poses ? hit.poses->frames : 0});
+    }
+    const auto chosen = choose_draft(candidates, static_cast<int>(frames * kFramesPerToken), seed);
+    return chosen ? &hits[*chosen] : nullptr;
+  }
+
+  /// Writes `draft` [n, rows, levels] into the unknown cells of a window, from its token
+  /// frame `first` on, and makes the likeliest share of them known.
+  void follow(TokenCanvas& window, const at::Tensor& draft, int64_t first, const Condition& condition,
+              const GenerateOptions& options) const {
+    const int64_t last = std::min(window.tokens.size(0), first + draft.size(0));
+    if (last <= first) return;
+    at::Tensor free = torch::zeros_like(window.known);
+    for (int64_t t = first; t < last; ++t) {
+      const int64_t before = std::max<int64_t>(0, t - kSeamFrames);
+      const int64_t behind = std::min(window.known.size(0), t + kSeamFrames + 1);
+      if (!window.known.slice(0, before, behind).any().item<bool>()) free[t].fill_(true);
+    }
+    window.tokens = torch::where(window.known.unsqueeze(2), window.tokens, 0);
+    window.tokens.slice(0, first, last).copy_(
+        torch::where(window.known.slice(0, first, last).unsqueeze(2),
+                     window.tokens.slice(0, first, last), draft.slice(0, 0, last - first)));
+    const at::Tensor likelihood =
+        token_likelihood(masked, condition, window.tokens.select(2, 0), options.seed);
+    window.known = window.known.logical_or(likeliest_cells(likelihood, free, options.follow));
   }
 };
 
@@ -189,7 +228,7 @@ TokenCanvas Generator::canvas(int64_t frames) const {
           torch::zeros({frames, config.rows}, torch::kBool)};
 }
 
-int Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last, const std::string& prompt,
+FillReport Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last, const std::string& prompt,
                     const std::vector<RetrievedMotion>& hits, const GenerateOptions& options,
                     GenerationTimes* times) const {
   const torch::NoGradGuard no_grad;
@@ -202,12 +241,31 @@ int Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last, const std:
   }
   const std::vector<TokenWindow> windows = plan_windows(canvas.known, first, last);
   const Condition condition = impl_->condition(prompt, used);
+  FillReport report;
+  report.hits_used = static_cast<int>(used.size());
+  at::Tensor draft;
+  const RetrievedMotion* followed =
+      options.follow > 0 ? impl_->draft_hit(used, last - first, options.seed) : nullptr;
+  if (followed) {
+    report.followed_clip = followed->clip_id;
+    draft = impl_->encode(
+        fit_length(*followed->poses, static_cast<int>((last - first) * kFramesPerToken)));
+  }
   spent.text = watch.lap();
   for (size_t i = 0; i < windows.size(); ++i) {
     const TokenWindow& window = windows[i];
     const uint64_t seed = i == 0 ? options.seed : mix_seed(options.seed, i);
-    const KnownTokens known{canvas.tokens.slice(0, window.first, window.last),
-                            canvas.known.slice(0, window.first, window.last)};
+    TokenCanvas start{canvas.tokens.slice(0, window.first, window.last).clone(),
+                      canvas.known.slice(0, window.first, window.last).clone()};
+    if (followed) {
+      // The stretch begins at `first`; a window may begin before it, or within.
+      const int64_t skipped = std::max<int64_t>(0, window.first - first);
+      if (skipped < draft.size(0)) {
+        impl_->follow(start, draft.slice(0, skipped), std::max<int64_t>(0, first - window.first),
+                      condition, options);
+      }
+    }
+    const KnownTokens known{start.tokens, start.known};
     const auto base =
         sample_base(impl_->masked, condition, window.last - window.first, seed, options.sampling,
                     KnownTokens{known.tokens.select(2, 0), known.known});
@@ -224,7 +282,7 @@ int Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last, const std:
     times->base += spent.base;
     times->residual += spent.residual;
   }
-  return static_cast<int>(used.size());
+  return report;
 }
 
 Motion Generator::decode(const at::Tensor& tokens, bool held_feet) const {
@@ -244,7 +302,10 @@ Generated Generator::generate(const std::string& prompt, const std::vector<Retri
   const int frames =
       motion_frames(options.seconds, {hits.begin(), hits.begin() + count}, impl_->skeleton.fps);
   TokenCanvas map = canvas((frames + kFramesPerToken - 1) / kFramesPerToken);
-  result.hits_used = fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times);
+  const FillReport filled =
+      fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times);
+  result.hits_used = filled.hits_used;
+  result.followed_clip = filled.followed_clip;
   result.tokens = map.tokens;
   Stopwatch watch;
   result.motion = slice(decode(result.tokens, options.held_feet), 0, frames);

@@ -34,6 +34,10 @@ struct GenerateOptions {
   uint64_t seed = 0;
   bool use_retrieval = true;  ///< false: the hits are not read at all
   bool held_feet = true;      ///< standing feet do not slide (hold_feet)
+  /// Share of the codes that a map starts with: those of one of the hits with poses
+  /// (choose_draft), the likeliest under the prompt (token_likelihood). 0: it starts
+  /// empty; 1: the hit itself, through the tokenizer. Without such a hit it starts empty.
+  double follow = 0;
   SamplingOptions sampling;
 };
 
@@ -46,7 +50,14 @@ struct Generated {
   Motion motion;      ///< uniform bone lengths, not below the floor
   at::Tensor tokens;  ///< int64 [T, rows, levels]
   int hits_used = 0;
+  std::optional<int64_t> followed_clip;  ///< of the hit whose codes it started from
   GenerationTimes times;
+};
+
+/// What a stretch was filled from.
+struct FillReport {
+  int hits_used = 0;
+  std::optional<int64_t> followed_clip;
 };
 
 /// A token map of any length that is filled piece by piece.
@@ -77,11 +88,10 @@ class Generator {
   TokenCanvas canvas(int64_t frames) const;
   /// Samples the unknown cells of token frames [first, last) under one prompt; all
   /// are known afterwards. Long stretches are cut as plan_windows() says. Of the
-  /// options `seconds` is not read. Returns how many hits were used. `times` is
-  /// added to. Throws Error for frames outside of the map, and as generate() does.
-  int fill(TokenCanvas& canvas, int64_t first, int64_t last, const std::string& prompt,
-           const std::vector<RetrievedMotion>& hits, const GenerateOptions& options,
-           GenerationTimes* times = nullptr) const;
+  /// options `seconds` is not read. `times` is added to. Throws Error for frames outside of the map, and as generate() does.
+  FillReport fill(TokenCanvas& canvas, int64_t first, int64_t last, const std::string& prompt,
+                  const std::vector<RetrievedMotion>& hits, const GenerateOptions& options,
+                  GenerationTimes* times = nullptr) const;
   /// Tokens of any length -> a motion of four frames each with the bone lengths
   /// of the skeleton, smoothed by a Gaussian of 40 ms. It starts at the origin and faces +Z. With
   /// `held_feet` standing feet do not slide (hold_feet).

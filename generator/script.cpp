@@ -115,7 +115,8 @@ void fill_segment(const Generator& generator, TokenCanvas& canvas, int64_t begin
     GenerateOptions generate = options.generate;
     generate.seed = i == 0 ? first_seed : mix_seed(first_seed, static_cast<uint64_t>(i), 1);
     made.hits_used =
-        generator.fill(candidate, from, end, segment.sentence, segment.hits, generate, &times);
+        generator.fill(candidate, from, end, segment.sentence, segment.hits, generate, &times)
+            .hits_used;
     double score = 0;
     if (options.candidates > 1) {
       Motion piece = generator.decode(candidate.tokens.slice(0, seen, end), generate.held_feet);

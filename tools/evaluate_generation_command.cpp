@@ -52,11 +52,12 @@ void print_body(const GenerationSubset& subset, const char* name, const MotionFi
 void print_report(const GenerationReport& report) {
   const nlohmann::json& protocol = report.protocol;
   fmt::print(
-      "protocol {}: {} prompts of {}, {} generations each, {} draws of batches of {}; chance "
+      "protocol {}: {} prompts of {}, drawn {}, {} generations each, {} draws of batches of {}; chance "
       "{:.1f} "
       "%\njudge {}, {} gallery clips; evaluator {}\n\n",
       protocol.at("protocol").get<std::string>(), report.subsets.front().prompts,
-      protocol.at("prompt_split").get<std::string>(), protocol.at("repeats").get<int>(),
+      protocol.at("prompt_split").get<std::string>(), protocol.at("draw").get<std::string>(),
+      protocol.at("repeats").get<int>(),
       protocol.at("draws").get<int>(), protocol.at("batch").get<int>(),
       100 * report.subsets.front().chance, protocol.at("judge").get<std::string>(),
       protocol.at("gallery_clips").get<int>(), protocol.at("evaluator").get<std::string>());
@@ -133,6 +134,11 @@ void register_evaluate_generation(CLI::App& parent, Program& program) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--split", run.prompt_split, "captions of these clips")
       ->capture_default_str();
+  command
+      ->add_option("--draw", run.draw,
+                   "even: prompts spread over the contents; uniform: every clip equally likely")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"even", "uniform"}));
   command->add_option("--prompt-seed", run.seed, "choice of the prompts")->capture_default_str();
   command->add_option("--repeats", run.repeats, "generations of every prompt (papers: 20)")
       ->capture_default_str()

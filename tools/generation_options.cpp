@@ -44,6 +44,12 @@ void GenerationOptions::add(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--no-retrieval", no_retrieval, "from the text alone");
+  command
+      .add_option("--follow", generate.follow,
+                  "share of the codes that are those of a retrieved motion to begin with; 0: none, "
+                  "1: that motion as it is")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
   command.add_flag("!--slide", generate.held_feet,
                    "leave standing feet as the model made them, do not hold them in place");
   command
@@ -65,10 +71,12 @@ GenerationWorkspace::GenerationWorkspace(const std::map<std::string, ModelStage>
   const SamplingOptions& sampling = options.generate.sampling;
   identity_ = fmt::format(
       "model {} steps {} guidance {:g} temperature {:g} top {:g} corrections {} "
-      "residual guidance {:g} residual temperature {:g} retrieval {} best of {} length {} feet {}",
+      "residual guidance {:g} residual temperature {:g} retrieval {} follow {:g} best of {} "
+      "length {} feet {}",
       content_hash(digest), sampling.steps, sampling.guidance, sampling.temperature,
       sampling.top_share, sampling.correction_rounds, sampling.residual_guidance,
-      sampling.residual_temperature, options.no_retrieval ? "off" : "on", options.best_of,
+      sampling.residual_temperature, options.no_retrieval ? "off" : "on",
+      options.generate.follow, options.best_of,
       options.length, options.generate.held_feet ? "held" : "free");
 }
 
@@ -90,7 +98,8 @@ Evidence GenerationWorkspace::find_evidence(const std::string& sentence,
     if (!vectors || vectors->text.empty()) continue;
     RetrievedMotion motion{hit.clip.id,    vectors->motion, vectors->text,
                            hit.similarity, hit.clip.frames, {}};
-    if (static_cast<int64_t>(result.motions.size()) < generator_.sequence_hits()) {
+    if (options_.generate.follow > 0 ||
+        static_cast<int64_t>(result.motions.size()) < generator_.sequence_hits()) {
       motion.poses = search_.database().motion(hit.clip.id);
     }
     result.motions.push_back(std::move(motion));

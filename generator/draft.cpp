@@ -1,0 +1,132 @@
+#include "generator/draft.h"
+
+#include <torch/types.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr double kLengthWeight = 0.1, kEqualScores = 0.03;
+constexpr int kLeastDraftFrames = 8;
+constexpr double kMostStretch = 1.25;
+constexpr uint64_t kChoiceStream = 0x64726166, kHalvesStream = 0x68616c66;
+
+/// Frame `t` of the result is frame t (n - 1) / (frames - 1) of the motion, linearly.
+Motion resample(const Motion& motion, int frames) {
+  Motion result(frames, motion.joints);
+  for (int t = 0; t < frames; ++t) {
+    const double place =
+        frames > 1 ? t * static_cast<double>(motion.frames - 1) / (frames - 1) : 0.0;
+    const int before = std::min(static_cast<int>(place), motion.frames - 1);
+    const int after = std::min(before + 1, motion.frames - 1);
+    const double share = place - before;
+    for (int joint = 0; joint < motion.joints; ++joint) {
+      result.set(t, joint,
+                 (1 - share) * motion.position(before, joint) + share * motion.position(after, joint));
+    }
+  }
+  return result;
+}
+
+/// First frame of the stretch in which the joints travel furthest; the earliest of equal ones.
+int liveliest_start(const Motion& motion, int frames) {
+  std::vector<double> travelled(static_cast<size_t>(motion.frames), 0);
+  for (int t = 1; t < motion.frames; ++t) {
+    double step = 0;
+    for (int joint = 0; joint < motion.joints; ++joint) {
+      step += (motion.position(t, joint) - motion.position(t - 1, joint)).norm();
+    }
+    travelled[static_cast<size_t>(t)] = travelled[static_cast<size_t>(t) - 1] + step;
+  }
+  int best = 0;
+  double most = -1;
+  for (int start = 0; start + frames <= motion.frames; ++start) {
+    const double distance =
+        travelled[static_cast<size_t>(start + frames) - 1] - travelled[static_cast<size_t>(start)];
+    if (distance > most + 1e-9) {
+      most = distance;
+      best = start;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<size_t> choose_draft(const std::vector<DraftCandidate>& candidates, int frames,
+                                   uint64_t seed) {
+  std::vector<std::pair<double, size_t>> scored;
+  double best = -2;
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const int length = candidates[i].frames;
+    if (length < kLeastDraftFrames) continue;
+    const double apart = std::abs(length - frames) / static_cast<double>(std::max(length, frames));
+    const double score = candidates[i].similarity * std::exp(-kLengthWeight * apart);
+    scored.emplace_back(score, i);
+    best = std::max(best, score);
+  }
+  std::erase_if(scored, [&](const auto& entry) { return entry.first < best - kEqualScores; });
+  if (scored.empty()) return std::nullopt;
+  CounterRandom random(seed, kChoiceStream);
+  return scored[random.below(scored.size())].second;
+}
+
+Motion fit_length(const Motion& motion, int frames) {
+  const double ratio = static_cast<double>(motion.frames) / frames;
+  if (ratio <= kMostStretch && ratio >= 1 / kMostStretch) return resample(motion, frames);
+  if (motion.frames < frames) return motion;
+  const int start = liveliest_start(motion, frames);
+  return slice(motion, start, start + frames);
+}
+
+at::Tensor token_likelihood(MaskedTransformer model, const Condition& condition,
+                            const at::Tensor& tokens, uint64_t seed) {
+  const torch::NoGradGuard no_grad;
+  model->eval();
+  const auto caches = model->prepare(condition);
+  const auto device = caches.front().keys.device();
+  const int64_t frames = tokens.size(0), rows = tokens.size(1), count = frames * rows;
+  const at::Tensor flat = tokens.reshape({count}).contiguous();
+  const at::Tensor result = torch::zeros({count});
+  const CounterRandom random(seed, kHalvesStream);
+  for (const bool half : {false, true}) {
+    at::Tensor masked = flat.clone();
+    std::vector<int64_t> cells;
+    for (int64_t cell = 0; cell < count; ++cell) {
+      if ((random.uniform_at(static_cast<uint64_t>(cell)) < 0.5) != half) continue;
+      cells.push_back(cell);
+      masked.data_ptr<int64_t>()[cell] = model->mask_token();
+    }
+    if (cells.empty()) continue;
+    const auto logits = model->forward(masked.reshape({1, frames, rows}).to(device), caches);
+    const auto probability = torch::log_softmax(logits[0].to(torch::kCPU), 1).contiguous();
+    for (const int64_t cell : cells) {
+      result.data_ptr<float>()[cell] =
+          probability[cell][flat.data_ptr<int64_t>()[cell]].item<float>();
+    }
+  }
+  return result.reshape({frames, rows});
+}
+
+at::Tensor likeliest_cells(const at::Tensor& likelihood, const at::Tensor& free, double share) {
+  const at::Tensor scores = likelihood.contiguous(), allowed = free.contiguous();
+  std::vector<int64_t> cells;
+  for (int64_t cell = 0; cell < allowed.numel(); ++cell) {
+    if (allowed.data_ptr<bool>()[cell]) cells.push_back(cell);
+  }
+  const auto kept = static_cast<size_t>(
+      std::llround(std::clamp(share, 0.0, 1.0) * static_cast<double>(cells.size())));
+  const float* score = scores.data_ptr<float>();
+  std::stable_sort(cells.begin(), cells.end(),
+                   [&](int64_t a, int64_t b) { return score[a] > score[b]; });
+  at::Tensor result = torch::zeros_like(allowed);
+  for (size_t i = 0; i < kept; ++i) result.data_ptr<bool>()[cells[i]] = true;
+  return result;
+}
+
+}  // namespace remomask
