@@ -159,6 +159,7 @@ std::vector<Motion> generate_answers(const AblationModel& model, const SamplingO
     options.seconds = prompt.frames / humanml_skeleton().fps;
     options.seed = prompt.seed;
     options.sampling = sampling;
+    options.follow = 0;  // what the networks make, not what a retrieved motion gives
     motions.push_back(generator.generate(prompt.text, hits, options).motion);
     monitor.report(
         {"answer prompts", static_cast<double>(i + 1), static_cast<double>(prompts.size()), ""});

@@ -1,9 +1,8 @@
 #include "generator/draft.h"
 
-#include <torch/types.h>
-
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/random.h"
 
@@ -14,7 +13,7 @@ namespace {
 constexpr double kLengthWeight = 0.1, kEqualScores = 0.03;
 constexpr int kLeastDraftFrames = 8;
 constexpr double kMostStretch = 1.25;
-constexpr uint64_t kChoiceStream = 0x64726166, kHalvesStream = 0x68616c66;
+constexpr uint64_t kChoiceStream = 0x64726166, kFramesStream = 0x6672616d;
 
 /// Frame `t` of the result is frame t (n - 1) / (frames - 1) of the motion, linearly.
 Motion resample(const Motion& motion, int frames) {
@@ -84,48 +83,18 @@ Motion fit_length(const Motion& motion, int frames) {
   return slice(motion, start, start + frames);
 }
 
-at::Tensor token_likelihood(MaskedTransformer model, const Condition& condition,
-                            const at::Tensor& tokens, uint64_t seed) {
-  const torch::NoGradGuard no_grad;
-  model->eval();
-  const auto caches = model->prepare(condition);
-  const auto device = caches.front().keys.device();
-  const int64_t frames = tokens.size(0), rows = tokens.size(1), count = frames * rows;
-  const at::Tensor flat = tokens.reshape({count}).contiguous();
-  const at::Tensor result = torch::zeros({count});
-  const CounterRandom random(seed, kHalvesStream);
-  for (const bool half : {false, true}) {
-    at::Tensor masked = flat.clone();
-    std::vector<int64_t> cells;
-    for (int64_t cell = 0; cell < count; ++cell) {
-      if ((random.uniform_at(static_cast<uint64_t>(cell)) < 0.5) != half) continue;
-      cells.push_back(cell);
-      masked.data_ptr<int64_t>()[cell] = model->mask_token();
-    }
-    if (cells.empty()) continue;
-    const auto logits = model->forward(masked.reshape({1, frames, rows}).to(device), caches);
-    const auto probability = torch::log_softmax(logits[0].to(torch::kCPU), 1).contiguous();
-    for (const int64_t cell : cells) {
-      result.data_ptr<float>()[cell] =
-          probability[cell][flat.data_ptr<int64_t>()[cell]].item<float>();
-    }
+std::vector<bool> followed_frames(int64_t frames, double share, uint64_t seed) {
+  const double start = CounterRandom(seed, kFramesStream).uniform_at(0);
+  std::vector<std::pair<double, size_t>> order;
+  for (int64_t t = 0; t < frames; ++t) {
+    const double place = start + static_cast<double>(t) / std::numbers::phi;
+    order.emplace_back(place - std::floor(place), static_cast<size_t>(t));
   }
-  return result.reshape({frames, rows});
-}
-
-at::Tensor likeliest_cells(const at::Tensor& likelihood, const at::Tensor& free, double share) {
-  const at::Tensor scores = likelihood.contiguous(), allowed = free.contiguous();
-  std::vector<int64_t> cells;
-  for (int64_t cell = 0; cell < allowed.numel(); ++cell) {
-    if (allowed.data_ptr<bool>()[cell]) cells.push_back(cell);
-  }
-  const auto kept = static_cast<size_t>(
-      std::llround(std::clamp(share, 0.0, 1.0) * static_cast<double>(cells.size())));
-  const float* score = scores.data_ptr<float>();
-  std::stable_sort(cells.begin(), cells.end(),
-                   [&](int64_t a, int64_t b) { return score[a] > score[b]; });
-  at::Tensor result = torch::zeros_like(allowed);
-  for (size_t i = 0; i < kept; ++i) result.data_ptr<bool>()[cells[i]] = true;
+  std::sort(order.begin(), order.end());
+  const auto kept =
+      static_cast<size_t>(std::llround(std::clamp(share, 0.0, 1.0) * static_cast<double>(frames)));
+  std::vector<bool> result(static_cast<size_t>(frames), false);
+  for (size_t i = 0; i < kept; ++i) result[order[i].second] = true;
   return result;
 }
 

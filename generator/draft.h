@@ -1,18 +1,14 @@
 #pragma once
 
-#include <ATen/core/Tensor.h>
-
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "generator/masked_transformer.h"
-#include "generator/tokenizer.h"
 #include "motion/motion.h"
 
 namespace remomask {
 
-// A retrieved motion as the start of a token map: part of its codes stay, the
+// A retrieved motion as the start of a token map: some of its token frames stay, the
 // masked transformer makes the others under the prompt.
 
 /// What is known of a hit before its codes are asked for.
@@ -33,14 +29,9 @@ std::optional<size_t> choose_draft(const std::vector<DraftCandidate>& candidates
 /// travel furthest.
 Motion fit_length(const Motion& motion, int frames);
 
-/// Log-probability of every base token of a map int64 [T, rows] given about half of the
-/// others, text and hits: float [T, rows]. Two passes; in each the other half of the
-/// cells is masked, drawn by the seed.
-at::Tensor token_likelihood(MaskedTransformer model, const Condition& condition,
-                            const at::Tensor& tokens, uint64_t seed);
-
-/// The round(share x free) likeliest of the cells of `free` bool [T, rows]; equal ones
-/// in the order of the map.
-at::Tensor likeliest_cells(const at::Tensor& likelihood, const at::Tensor& free, double share);
+/// Which of `frames` token frames keep the codes of the draft: round(share x frames) of
+/// them, spread evenly (the multiples of the golden ratio, from a start drawn by the
+/// seed). A smaller share keeps a subset.
+std::vector<bool> followed_frames(int64_t frames, double share, uint64_t seed);
 
 }  // namespace remomask

@@ -79,10 +79,11 @@ Edited edit_motion(const Generator& generator, const Motion& original,
   result.tokens_sampled = result.tokens - canvas.known.sum().item<int64_t>();
 
   const at::Tensor changed = canvas.known.all(1).logical_not().nonzero().reshape({-1});
-  result.hits_used =
+  const FillReport filled =
       generator.fill(canvas, changed[0].item<int64_t>(), changed[-1].item<int64_t>() + 1, prompt,
-                     hits, options.generate, &result.times)
-          .hits_used;
+                     hits, options.generate, &result.times);
+  result.hits_used = filled.hits_used;
+  result.followed = filled.followed;
   const Motion made = slice(generator.decode(canvas.tokens), 0, result.mask.frames());
   result.motion =
       splice_motion(original, made, result.mask, skeleton, options.splice, &result.splice);

@@ -15,7 +15,11 @@ struct EditSpan {
 };
 
 struct EditOptions {
-  GenerateOptions generate;  ///< `seconds` is not read: the length is that of the motion
+  EditOptions() { generate.follow = 0; }
+
+  /// `seconds` is not read: the length is that of the motion. `follow` begins with 0: what
+  /// is edited joins what stays, not a retrieved motion.
+  GenerateOptions generate;
   int extend_frames = 0;     ///< new frames behind the last one
   SpliceOptions splice;
 };
@@ -26,6 +30,7 @@ struct Edited {
   int64_t tokens = 0;          ///< cells of the token map ...
   int64_t tokens_sampled = 0;  ///< ... and how many of them were sampled
   int hits_used = 0;
+  std::optional<FollowedHit> followed;
   SpliceReport splice;
   GenerationTimes times;
 };

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "nn/model_file.h"
+#include "retriever/evidence_gate.h"
 
 namespace remomask {
 
@@ -83,11 +84,18 @@ void train_stage(const TrainingRecipe& recipe, const std::string& stage, const S
   fs::remove(checkpoint);
 }
 
-void join_stages(const TrainingRecipe& recipe, const StageFile& file,
+void join_stages(const TrainingRecipe& recipe, const StageFile& file, const TrainingSplits& clips,
                  const std::string& model_path) {
   std::vector<ModelStage> stages;
-  for (const std::string& stage : recipe_stages(recipe)) {
-    if (stage != "text") stages.push_back(load_stage(file(stage), stage));
+  for (const std::string& name : recipe_stages(recipe)) {
+    if (name == "text") continue;
+    ModelStage stage = load_stage(file(name), name);
+    if (name == "masked" && masked_config(stage.config).max_hits > 0) {
+      const Retriever retriever(load_stage(file("retriever"), "retriever"));
+      const auto gate = measure_gate(retriever, clips.train, clips.val);
+      if (gate) stage.config[kEvidenceGateKey] = *gate;
+    }
+    stages.push_back(std::move(stage));
   }
   save_model(model_path, stages, /*half=*/true);
 }

@@ -38,8 +38,9 @@ using StageFile = std::function<std::string(const std::string& stage)>;
 void train_stage(const TrainingRecipe& recipe, const std::string& stage, const StageFile& file,
                  const TrainingSplits& clips, GeneratorDataCache& prepared, const Monitor& monitor);
 
-/// Puts the stages of a recipe but "text" into one model file in half precision.
-void join_stages(const TrainingRecipe& recipe, const StageFile& file,
+/// Puts the stages of a recipe but "text" into one model file in half precision, with the
+/// evidence gate of its retriever (measure_gate()) where it reads hits.
+void join_stages(const TrainingRecipe& recipe, const StageFile& file, const TrainingSplits& clips,
                  const std::string& model_path);
 
 }  // namespace remomask

@@ -13,6 +13,7 @@
 #include "generator/token_windows.h"
 #include "generator/tokenizer_network.h"
 #include "motion/features.h"
+#include "retriever/evidence_gate.h"
 
 namespace remomask {
 
@@ -49,6 +50,12 @@ const Skeleton& skeleton_named(const std::string& name) {
   throw Error("unknown skeleton \"" + name + "\"; use humanml3d or kit");
 }
 
+std::optional<EvidenceGate> stage_gate(const ModelStage& masked) {
+  const auto found = masked.config.find(kEvidenceGateKey);
+  if (found == masked.config.end()) return std::nullopt;
+  return found->get<EvidenceGate>();
+}
+
 class Stopwatch {
  public:
   /// Seconds since the last call.
@@ -80,12 +87,14 @@ struct Generator::Impl {
   MaskedTransformer masked;
   ResidualTransformer residual{nullptr};
   const Skeleton& skeleton;
+  std::optional<EvidenceGate> gate;  // none: every hit is trusted in full
 
   explicit Impl(const std::map<std::string, ModelStage>& stages)
       : retriever(need_stage(stages, "retriever")),
         tokenizer(need_stage(stages, "tokenizer")),
         masked(load_masked(need_stage(stages, "masked"))),
         skeleton(skeleton_named(tokenizer.config().skeleton)) {
+    gate = stage_gate(need_stage(stages, "masked"));
     const TokenizerConfig& tokens = tokenizer.config();
     const MaskedConfig& base = masked->config();
     need_equal(base.rows, tokens.rows, "the number of rows");
@@ -154,36 +163,39 @@ struct Generator::Impl {
     return result;
   }
 
-  /// The hit that a stretch of `frames` token frames follows, if any.
-  const RetrievedMotion* draft_hit(const std::vector<RetrievedMotion>& hits, int64_t frames,
-                                   uint64_t seed) const {
+  /// The hit that a stretch of `frames` token frames follows, and how far.
+  std::optional<FollowedHit> choose_followed(const std::vector<RetrievedMotion>& hits,
+                                             int64_t frames, const GenerateOptions& options,
+                                             const RetrievedMotion** hit) const {
     std::vector<DraftCandidate> candidates;
-    for (const RetrievedMotion& hit : hits) {
-      candidates.push_back({hit.similarity, hit.poses ? hit.poses->frames : 0});
+    for (const RetrievedMotion& found : hits) {
+      candidates.push_back({found.similarity, found.poses ? found.poses->frames : 0});
     }
-    const auto chosen = choose_draft(candidates, static_cast<int>(frames * kFramesPerToken), seed);
-    return chosen ? &hits[*chosen] : nullptr;
+    const auto chosen =
+        choose_draft(candidates, static_cast<int>(frames * kFramesPerToken), options.seed);
+    if (!chosen) return std::nullopt;
+    *hit = &hits[*chosen];
+    const double share = options.follow * (gate ? gate->trust((*hit)->similarity) : 1);
+    if (share <= 0) return std::nullopt;
+    return FollowedHit{(*hit)->clip_id, share};
   }
 
-  /// Writes `draft` [n, rows, levels] into the unknown cells of a window, from its token
-  /// frame `first` on, and makes the likeliest share of them known.
-  void follow(TokenCanvas& window, const at::Tensor& draft, int64_t first, const Condition& condition,
-              const GenerateOptions& options) const {
-    const int64_t last = std::min(window.tokens.size(0), first + draft.size(0));
-    if (last <= first) return;
-    at::Tensor free = torch::zeros_like(window.known);
-    for (int64_t t = first; t < last; ++t) {
+  /// The codes of `hit` that token frames [first, last) of the canvas are to keep.
+  KnownTokens make_draft(const RetrievedMotion& hit, const TokenCanvas& canvas, int64_t first,
+                         int64_t last, double share, uint64_t seed) const {
+    const at::Tensor codes =
+        encode(fit_length(*hit.poses, static_cast<int>((last - first) * kFramesPerToken)));
+    const int64_t frames = std::min(codes.size(0), last - first);
+    const std::vector<bool> followed = followed_frames(frames, share, seed);
+    KnownTokens draft{torch::zeros_like(canvas.tokens), torch::zeros_like(canvas.known)};
+    draft.tokens.slice(0, first, first + frames).copy_(codes.slice(0, 0, frames));
+    for (int64_t t = first; t < first + frames; ++t) {
       const int64_t before = std::max<int64_t>(0, t - kSeamFrames);
-      const int64_t behind = std::min(window.known.size(0), t + kSeamFrames + 1);
-      if (!window.known.slice(0, before, behind).any().item<bool>()) free[t].fill_(true);
+      const int64_t behind = std::min(canvas.known.size(0), t + kSeamFrames + 1);
+      const bool at_seam = canvas.known.slice(0, before, behind).any().item<bool>();
+      if (followed[static_cast<size_t>(t - first)] && !at_seam) draft.known[t].fill_(true);
     }
-    window.tokens = torch::where(window.known.unsqueeze(2), window.tokens, 0);
-    window.tokens.slice(0, first, last).copy_(
-        torch::where(window.known.slice(0, first, last).unsqueeze(2),
-                     window.tokens.slice(0, first, last), draft.slice(0, 0, last - first)));
-    const at::Tensor likelihood =
-        token_likelihood(masked, condition, window.tokens.select(2, 0), options.seed);
-    window.known = window.known.logical_or(likeliest_cells(likelihood, free, options.follow));
+    return draft;
   }
 };
 
@@ -243,29 +255,23 @@ FillReport Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last, con
   const Condition condition = impl_->condition(prompt, used);
   FillReport report;
   report.hits_used = static_cast<int>(used.size());
-  at::Tensor draft;
-  const RetrievedMotion* followed =
-      options.follow > 0 ? impl_->draft_hit(used, last - first, options.seed) : nullptr;
-  if (followed) {
-    report.followed_clip = followed->clip_id;
-    draft = impl_->encode(
-        fit_length(*followed->poses, static_cast<int>((last - first) * kFramesPerToken)));
+  KnownTokens draft{canvas.tokens, canvas.known};
+  const RetrievedMotion* hit = nullptr;
+  if (options.follow > 0) {
+    report.followed = impl_->choose_followed(used, last - first, options, &hit);
+  }
+  if (report.followed) {
+    draft = impl_->make_draft(*hit, canvas, first, last, report.followed->share, options.seed);
+    draft.tokens = torch::where(canvas.known.unsqueeze(2), canvas.tokens, draft.tokens);
+    draft.known = draft.known.logical_or(canvas.known);
   }
   spent.text = watch.lap();
   for (size_t i = 0; i < windows.size(); ++i) {
     const TokenWindow& window = windows[i];
     const uint64_t seed = i == 0 ? options.seed : mix_seed(options.seed, i);
-    TokenCanvas start{canvas.tokens.slice(0, window.first, window.last).clone(),
-                      canvas.known.slice(0, window.first, window.last).clone()};
-    if (followed) {
-      // The stretch begins at `first`; a window may begin before it, or within.
-      const int64_t skipped = std::max<int64_t>(0, window.first - first);
-      if (skipped < draft.size(0)) {
-        impl_->follow(start, draft.slice(0, skipped), std::max<int64_t>(0, first - window.first),
-                      condition, options);
-      }
-    }
-    const KnownTokens known{start.tokens, start.known};
+    // Tokens of the piece before take the place of those that were drafted.
+    const KnownTokens known{draft.tokens.slice(0, window.first, window.last),
+                            draft.known.slice(0, window.first, window.last)};
     const auto base =
         sample_base(impl_->masked, condition, window.last - window.first, seed, options.sampling,
                     KnownTokens{known.tokens.select(2, 0), known.known});
@@ -276,6 +282,8 @@ FillReport Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last, con
     spent.residual += watch.lap();
     canvas.tokens.slice(0, window.first, window.last).copy_(tokens);
     canvas.known.slice(0, window.first, window.last).fill_(true);
+    draft.tokens.slice(0, window.first, window.last).copy_(tokens);
+    draft.known.slice(0, window.first, window.last).fill_(true);
   }
   if (times) {
     times->text += spent.text;
@@ -305,7 +313,7 @@ Generated Generator::generate(const std::string& prompt, const std::vector<Retri
   const FillReport filled =
       fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times);
   result.hits_used = filled.hits_used;
-  result.followed_clip = filled.followed_clip;
+  result.followed = filled.followed;
   result.tokens = map.tokens;
   Stopwatch watch;
   result.motion = slice(decode(result.tokens, options.held_feet), 0, frames);

@@ -34,10 +34,10 @@ struct GenerateOptions {
   uint64_t seed = 0;
   bool use_retrieval = true;  ///< false: the hits are not read at all
   bool held_feet = true;      ///< standing feet do not slide (hold_feet)
-  /// Share of the codes that a map starts with: those of one of the hits with poses
-  /// (choose_draft), the likeliest under the prompt (token_likelihood). 0: it starts
-  /// empty; 1: the hit itself, through the tokenizer. Without such a hit it starts empty.
-  double follow = 0;
+  /// Share of the token frames that keep the codes of one of the hits with poses
+  /// (choose_draft, followed_frames), less where the model's evidence gate trusts it less.
+  /// 0: the map starts empty; 1: the hit itself, through the tokenizer.
+  double follow = 0.5;
   SamplingOptions sampling;
 };
 
@@ -46,18 +46,24 @@ struct GenerationTimes {
   double text = 0, base = 0, residual = 0, decode = 0, finish = 0;
 };
 
-struct Generated {
-  Motion motion;      ///< uniform bone lengths, not below the floor
-  at::Tensor tokens;  ///< int64 [T, rows, levels]
-  int hits_used = 0;
-  std::optional<int64_t> followed_clip;  ///< of the hit whose codes it started from
-  GenerationTimes times;
+/// The hit whose codes a motion started from.
+struct FollowedHit {
+  int64_t clip_id = 0;
+  double share = 0;  ///< of the token frames
 };
 
 /// What a stretch was filled from.
 struct FillReport {
   int hits_used = 0;
-  std::optional<int64_t> followed_clip;
+  std::optional<FollowedHit> followed;
+};
+
+struct Generated {
+  Motion motion;      ///< uniform bone lengths, not below the floor
+  at::Tensor tokens;  ///< int64 [T, rows, levels]
+  int hits_used = 0;
+  std::optional<FollowedHit> followed;
+  GenerationTimes times;
 };
 
 /// A token map of any length that is filled piece by piece.

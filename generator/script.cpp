@@ -114,9 +114,8 @@ void fill_segment(const Generator& generator, TokenCanvas& canvas, int64_t begin
     TokenCanvas candidate{canvas.tokens.clone(), canvas.known.clone()};
     GenerateOptions generate = options.generate;
     generate.seed = i == 0 ? first_seed : mix_seed(first_seed, static_cast<uint64_t>(i), 1);
-    made.hits_used =
-        generator.fill(candidate, from, end, segment.sentence, segment.hits, generate, &times)
-            .hits_used;
+    const FillReport filled =
+        generator.fill(candidate, from, end, segment.sentence, segment.hits, generate, &times);
     double score = 0;
     if (options.candidates > 1) {
       Motion piece = generator.decode(candidate.tokens.slice(0, seen, end), generate.held_feet);
@@ -126,6 +125,8 @@ void fill_segment(const Generator& generator, TokenCanvas& canvas, int64_t begin
     if (i > 0 && score <= made.score) continue;
     made.score = score;
     made.seed = generate.seed;
+    made.hits_used = filled.hits_used;
+    made.followed = filled.followed;
     best = candidate;
   }
   canvas = best;

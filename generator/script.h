@@ -50,6 +50,7 @@ struct MadeSegment {
   uint64_t seed = 0;  ///< of the chosen candidate
   double score = 0;   ///< of it; 0 without candidates to choose from
   int hits_used = 0;
+  std::optional<FollowedHit> followed;
 };
 
 struct ScriptMotion {

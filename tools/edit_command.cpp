@@ -82,6 +82,7 @@ void register_edit(CLI::App& app, Program& program) {
   options->files.add_model(*command);
   options->files.add_database(*command);
   options->filter.add(*command);
+  options->generation.generate.follow = options->edit.generate.follow;
   options->generation.add(*command);
   command->callback([options, &program] {
     require_writable_output(options->output);
@@ -144,6 +145,7 @@ void register_edit(CLI::App& app, Program& program) {
                          {"path_turn_degrees", turn},
                          {"generator", workspace.identity()},
                          {"candidates", candidates.ranking()},
+                         {"followed", followed_json(made.followed, evidence)},
                          {"seconds_of_work", seconds},
                          {"evidence", evidence}});
       rows.push_back({options->prompt, evidence_line(evidence), made.motion});

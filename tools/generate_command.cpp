@@ -99,12 +99,14 @@ void register_generate(CLI::App& app, Program& program) {
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       const std::string path = sample_path(options->output, i, options->count);
       const nlohmann::json evidence = hits_json(made.hits);
+      const nlohmann::json followed = followed_json(made.generated.followed, evidence);
       save_motion_file(path, made.generated.motion,
                        {{"prompt", options->prompt},
                         {"seed", std::to_string(seed)},
                         {"generator", workspace.identity()},
                         {"database", workspace.search().database().uuid()},
                         {"candidates", made.candidates.dump()},
+                        {"followed", followed.dump()},
                         {"evidence", evidence.dump()}});
       results.push_back({{"file", path},
                          {"prompt", options->prompt},
@@ -113,6 +115,7 @@ void register_generate(CLI::App& app, Program& program) {
                          {"generator", workspace.identity()},
                          {"candidates", made.candidates},
                          {"length", made.length},
+                         {"followed", followed},
                          {"seconds_of_work", seconds},
                          {"evidence", evidence}});
       rows.push_back({options->prompt, evidence_line(evidence), made.generated.motion});
@@ -120,6 +123,11 @@ void register_generate(CLI::App& app, Program& program) {
         fmt::print("{}: {} frames ({:.1f} s of motion) in {:.2f} s, seed {}\n", path,
                    made.generated.motion.frames, made.generated.motion.frames / 20.0, seconds,
                    seed);
+        if (!followed.is_null()) {
+          fmt::print("  {:.0f} % of its frames began as {}\n",
+                     100 * followed.at("share").get<double>(),
+                     followed.at("clip").get<std::string>());
+        }
         if (i == 0 && !made.hits.empty()) fmt::print("made from the retrieved motions\n");
         for (const MotionHit& hit : made.hits) {
           if (i > 0) break;

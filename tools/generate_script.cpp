@@ -79,6 +79,7 @@ nlohmann::json measure_script(const ScriptMotion& made, const FoundSegments& fou
                             {"score", segment.score},
                             {"lowest_foot", *std::min_element(begin, end)},
                             {"highest_lowest_foot", *std::max_element(begin, end)},
+                            {"followed", followed_json(segment.followed, found.evidence[i])},
                             {"evidence", found.evidence[i]}};
     if (i > 0) {
       const double at_seam = jerk_at_seam(jerk, segment.first);

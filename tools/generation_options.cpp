@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "base/hash.h"
 #include "base/random.h"
@@ -46,8 +47,8 @@ void GenerationOptions::add(CLI::App& command) {
   command.add_flag("--no-retrieval", no_retrieval, "from the text alone");
   command
       .add_option("--follow", generate.follow,
-                  "share of the codes that are those of a retrieved motion to begin with; 0: none, "
-                  "1: that motion as it is")
+                  "share of the frames that keep the codes of a retrieved motion, less where it "
+                  "fits less; 0: none, 1: that motion as it is")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   command.add_flag("!--slide", generate.held_feet,
@@ -123,6 +124,16 @@ nlohmann::json GenerationWorkspace::choose_length(const std::string& prompt,
           {"neighbours", neighbours.size()},
           {"likely_seconds", estimate_seconds(distribution, LengthRule::likely, 0)},
           {"distribution", distribution}};
+}
+
+nlohmann::json followed_json(const std::optional<FollowedHit>& followed,
+                             const nlohmann::json& evidence) {
+  if (!followed) return nullptr;
+  for (const auto& hit : evidence) {
+    if (hit.at("clip_id") != followed->clip_id) continue;
+    return {{"clip_id", followed->clip_id}, {"clip", hit.at("clip")}, {"share", followed->share}};
+  }
+  throw std::logic_error("a motion followed a clip that was not retrieved");
 }
 
 std::vector<uint64_t> candidate_seeds(uint64_t seed, int count) {

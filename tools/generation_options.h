@@ -34,6 +34,11 @@ struct EvidencedMotion {
   nlohmann::json length;      ///< how the length was estimated; null where it was given
 };
 
+/// The retrieved motion, of those of hits_json(), that a generated one started from; null
+/// without one.
+nlohmann::json followed_json(const std::optional<FollowedHit>& followed,
+                             const nlohmann::json& evidence);
+
 /// Seeds of `count` candidates; the first is `seed` itself.
 std::vector<uint64_t> candidate_seeds(uint64_t seed, int count);
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "base/error.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
@@ -54,6 +55,22 @@ TEST(LabelPrompts, GoThroughTheContentsInTurn) {
   // The only clip "jump" comes with its other caption the second time.
   EXPECT_NE(prompts[0].text, prompts[3].text);
   EXPECT_EQ(prompts[0].text, prompts[6].text);
+}
+
+TEST(LabelPrompts, AUniformDrawTakesEveryClipAlike) {
+  const auto clips = clips_of_three_contents();
+  int walks = 0;
+  for (uint64_t seed = 0; seed < 100; ++seed) {
+    const auto prompts = choose_label_prompts(clips, "test", 1, seed, PromptDraw::uniform);
+    walks += prompts.at(0).content == "walk";
+  }
+  // 10 of 13 clips walk; the standard error of 100 draws is 4.2.
+  EXPECT_NEAR(walks, 77, 17);
+  const auto all = choose_label_prompts(clips, "test", 13, 1, PromptDraw::uniform);
+  std::set<std::string> names;
+  for (const LabelPrompt& prompt : all) names.insert(prompt.clip);
+  EXPECT_EQ(names.size(), 13u);
+  EXPECT_THROW(parse_prompt_draw("uneven"), Error);
 }
 
 TEST(LabelPrompts, AreAFunctionOfTheSeed) {

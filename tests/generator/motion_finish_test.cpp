@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "motion/procedural.h"
 
 namespace remomask {
 namespace {
@@ -63,6 +66,26 @@ TEST(MotionFinish, HeldFeetStandAndKeepTheBones) {
           (motion.position(t, joint) - motion.position(t, skeleton.parents[joint])).norm();
       EXPECT_NEAR(length, skeleton.bone_lengths[joint], 1e-4) << joint;
     }
+  }
+}
+
+// A gait whose feet do not slide keeps its path; its feet, which swing low, bend a little.
+TEST(MotionFinish, HoldingLeavesANaturalGaitAlmostAsItIs) {
+  const Skeleton& skeleton = humanml_skeleton();
+  for (const char* kind : {"walk-forward", "walk-fast", "run"}) {
+    const Motion before = make_procedural_clip(kind).motion;
+    Motion held = before;
+    hold_feet(held, extract_features_all_frames(before, skeleton, FeatureMode::fixed), skeleton);
+    double root = 0, all = 0;
+    for (int t = 0; t < before.frames; ++t) {
+      root = std::max(root, (held.position(t, 0) - before.position(t, 0)).norm());
+      for (int joint = 0; joint < before.joints; ++joint) {
+        all += (held.position(t, joint) - before.position(t, joint)).norm();
+      }
+    }
+    all /= before.frames * before.joints;
+    EXPECT_LT(root, 0.1) << kind;
+    EXPECT_LT(all, 0.06) << kind;
   }
 }
 

@@ -8,28 +8,11 @@
 #include "base/error.h"
 #include "generator/presets.h"
 #include "nn/threads.h"
+#include "tests/generator/pipeline_test_tools.h"
 #include "tests/generator/tiny_model.h"
 
 namespace remomask {
 namespace {
-
-std::vector<RetrievedMotion> two_hits(const Generator& generator) {
-  const GeneratorData& data = tiny_model().data;
-  std::vector<RetrievedMotion> hits;
-  for (int64_t i = 0; i < 2; ++i) {
-    RetrievedMotion hit;
-    hit.clip_id = i + 1;
-    hit.frames = i == 0 ? 40 : 60;
-    hit.similarity = 0.7;
-    const auto motion = data.motion[i].contiguous(), text = data.motion_text[i].contiguous();
-    hit.motion.assign(motion.data_ptr<float>(),
-                      motion.data_ptr<float>() + generator.retriever().embedding_width());
-    hit.text.assign(text.data_ptr<float>(),
-                    text.data_ptr<float>() + generator.retriever().embedding_width());
-    hits.push_back(hit);
-  }
-  return hits;
-}
 
 TEST(GeneratorData, ClipsBecomeTokensFeaturesAndNeighbours) {
   const GeneratorData& data = tiny_model().data;

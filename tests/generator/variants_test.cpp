@@ -90,6 +90,7 @@ TrainingSplits variant_clips() {
     TrainingClip& clip = splits.train[i];
     clip.split = "train";
     clip.group = static_cast<int>(i / 2);
+    clip.content = texts[i % 4];
     for (const char* how : {"", " slowly", " quickly"}) clip.captions.push_back(texts[i % 4] + how);
   }
   for (const std::string& text : texts) {
@@ -124,7 +125,7 @@ TEST(Variants, TrainStoreAndGenerate) {
       train_stage(recipe, stage, file, clips, prepared, {});
       EXPECT_FALSE(fs::exists(file(stage) + ".checkpoint"));
     }
-    join_stages(recipe, file, file("model"));
+    join_stages(recipe, file, clips, file("model"));
     const auto stages = load_model(file("model"));
     const nlohmann::json masked = stages.at("masked").config;
     const nlohmann::json retriever = stages.at("retriever").config;
@@ -132,6 +133,7 @@ TEST(Variants, TrainStoreAndGenerate) {
     EXPECT_EQ(masked.at("max_hits") == 0, name == "momask" || name == "no-retrieval") << name;
     EXPECT_EQ(masked.at("sequence_hits") == 0,
               name == "momask" || name == "no-retrieval" || name == "no-hit-sequences");
+    EXPECT_EQ(masked.contains("evidence_gate"), masked.at("max_hits") > 0) << name;
     EXPECT_EQ(masked.at("attention"), name == "momask" || name == "no-ssta" ? "joined" : "ssta");
     EXPECT_EQ(masked.at("drops_conditions"), name != "no-rag-cfg") << name;
     EXPECT_EQ(retriever.at("encoders"), name == "no-part-encoders" ? 1 : 6) << name;
