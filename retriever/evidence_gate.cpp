@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "base/error.h"
 
@@ -12,16 +14,20 @@ namespace remomask {
 
 namespace {
 
-constexpr double kQuantile = 0.05;
+constexpr double kRightOnesMissed = 0.05, kWrongOnesStopped = 0.5;
 constexpr size_t kTextBlock = 256;
 
-/// The value that `share` of the others are below, linear between two of them.
-double quantile(std::vector<double>& values, double share) {
-  std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<size_t>(place);
-  const size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+double quantile(std::vector<WeightedSimilarity>& values, double share) {
+  std::sort(values.begin(), values.end(),
+            [](const auto& a, const auto& b) { return a.similarity < b.similarity; });
+  double total = 0;
+  for (const auto& value : values) total += value.weight;
+  double sum = 0;
+  for (const auto& value : values) {
+    sum += value.weight;
+    if (sum >= share * total * (1 - 1e-12)) return value.similarity;
+  }
+  return values.back().similarity;
 }
 
 std::vector<const TrainingClip*> clips_with_content(const std::vector<TrainingClip>& clips) {
@@ -40,13 +46,13 @@ double EvidenceGate::trust(double similarity) const {
   return (similarity - none) / (all - none);
 }
 
-EvidenceGate fit_gate(std::vector<double> right, std::vector<double> wrong) {
+EvidenceGate fit_gate(std::vector<WeightedSimilarity> right,
+                      std::vector<WeightedSimilarity> wrong) {
   if (right.empty() || wrong.empty()) {
     throw Error("an evidence gate needs similarities of right hits and of wrong ones");
   }
-  EvidenceGate gate{quantile(right, kQuantile), quantile(wrong, 1 - kQuantile)};
-  if (gate.none > gate.all) gate.none = gate.all = (gate.none + gate.all) / 2;
-  return gate;
+  const double all = quantile(right, kRightOnesMissed);
+  return {std::min(all, quantile(wrong, kWrongOnesStopped)), all};
 }
 
 std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
@@ -60,13 +66,15 @@ std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
   const at::Tensor motions = retriever.encode_motion(features).global;
   std::vector<std::string> captions;
   std::vector<const TrainingClip*> owners;
+  std::map<std::string, double> count;
   for (const auto* clip : asked) {
     for (const auto& caption : clip->captions) {
       captions.push_back(caption);
       owners.push_back(clip);
+      ++count[clip->content];
     }
   }
-  std::vector<double> right, wrong;
+  std::vector<WeightedSimilarity> right, wrong;
   for (size_t first = 0; first < captions.size(); first += kTextBlock) {
     const size_t last = std::min(captions.size(), first + kTextBlock);
     const std::vector<std::string> block(captions.begin() + static_cast<std::ptrdiff_t>(first),
@@ -84,8 +92,9 @@ std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
           best_right = std::max(best_right, static_cast<double>(row[j]));
         }
       }
-      if (std::isfinite(best_right)) right.push_back(best_right);
-      if (std::isfinite(best_wrong)) wrong.push_back(best_wrong);
+      const double weight = 1 / count.at(owners[i]->content);
+      if (std::isfinite(best_right)) right.push_back({best_right, weight});
+      if (std::isfinite(best_wrong)) wrong.push_back({best_wrong, weight});
     }
   }
   if (right.empty() || wrong.empty()) return std::nullopt;

@@ -23,16 +23,23 @@ struct EvidenceGate {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EvidenceGate, none, all)
 
-/// The gate that 95 % of the `right` similarities pass at least in part and 95 % of the
-/// `wrong` ones not in full: its limits are the 5 % quantile of `right` and the 95 % quantile
-/// of `wrong`; where these are the other way round, nothing needs a part, and the
-/// middle between them is a threshold. Throws Error when either list is empty.
-EvidenceGate fit_gate(std::vector<double> right, std::vector<double> wrong);
+/// Similarities of hits, each with its weight (above 0).
+struct WeightedSimilarity {
+  double similarity = 0, weight = 1;
+};
+
+/// The gate that 95 % of the `right` similarities pass in full and the lower half of the
+/// `wrong` ones not at all: its limits are the median of `wrong` and the 5 % quantile of
+/// `right` (the least similarity up to which the hits have that share of the weight), the
+/// latter alone where it is less. Throws Error when either list is empty.
+EvidenceGate fit_gate(std::vector<WeightedSimilarity> right,
+                      std::vector<WeightedSimilarity> wrong);
 
 /// The gate of a retriever. For every caption of a validation clip with a content: right is the
 /// best similarity to a training clip of that content and another group, wrong the best
 /// one to a training clip of another content, what search would find if the
-/// database did not hold what is asked for. Nothing where no clip has a content.
+/// database did not hold what is asked for. Every content weighs the same: else the few that
+/// most clips show, and search knows best, would set limits that rare ones miss. Nothing where no clip has a content.
 std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
                                          const std::vector<TrainingClip>& train,
                                          const std::vector<TrainingClip>& val);
