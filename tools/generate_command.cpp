@@ -27,6 +27,20 @@ void check_prompt_or_script(const std::string& prompt, const std::string& script
   }
 }
 
+void print_evidence(const nlohmann::json& evidence) {
+  if (!evidence.empty()) fmt::print("made from the retrieved motions\n");
+  for (const auto& hit : evidence) {
+    const nlohmann::json& captions = hit.at("captions");
+    const std::string influence =
+        hit.contains("influence")
+            ? fmt::format("{:3.0f} %  ", 100 * hit.at("influence").get<double>())
+            : "";
+    fmt::print("  {:.3f}  {}{:<28} {}\n", hit.at("similarity").get<double>(), influence,
+               hit.at("clip").get<std::string>(),
+               captions.empty() ? "" : captions.front().get<std::string>());
+  }
+}
+
 }  // namespace
 
 void register_generate(CLI::App& app, Program& program) {
@@ -37,6 +51,7 @@ void register_generate(CLI::App& app, Program& program) {
     GenerationOptions generation;
     uint64_t seed = 0;
     int count = 1;
+    bool influence = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
@@ -62,6 +77,9 @@ void register_generate(CLI::App& app, Program& program) {
   command->add_option("-n,--count", options->count, "number of motions, seeds SEED, SEED+1, ...")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  command->add_flag("--influence", options->influence,
+                    "also say what share of the codes would be others without each retrieved "
+                    "motion (as many generations more)");
   options->files.add_model(*command);
   options->files.add_database(*command);
   options->filter.add(*command);
@@ -98,7 +116,8 @@ void register_generate(CLI::App& app, Program& program) {
       const double seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       const std::string path = sample_path(options->output, i, options->count);
-      const nlohmann::json evidence = hits_json(made.hits);
+      const nlohmann::json evidence =
+          workspace.evidence_json(options->prompt, made, options->influence);
       const nlohmann::json followed = followed_json(made.generated.followed, evidence);
       save_motion_file(path, made.generated.motion,
                        {{"prompt", options->prompt},
@@ -128,12 +147,7 @@ void register_generate(CLI::App& app, Program& program) {
                      100 * followed.at("share").get<double>(),
                      followed.at("clip").get<std::string>());
         }
-        if (i == 0 && !made.hits.empty()) fmt::print("made from the retrieved motions\n");
-        for (const MotionHit& hit : made.hits) {
-          if (i > 0) break;
-          fmt::print("  {:.3f}  {:<28} {}\n", hit.similarity, hit.clip.name,
-                     hit.clip.captions.empty() ? "" : hit.clip.captions.front());
-        }
+        if (i == 0 || options->influence) print_evidence(evidence);
       }
     }
     if (!options->sheet.empty()) {

@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "base/random.h"
+#include "generator/influence.h"
 #include "generator/length_estimate.h"
 #include "tools/candidate_list.h"
 
@@ -142,6 +143,21 @@ std::vector<uint64_t> candidate_seeds(uint64_t seed, int count) {
   return seeds;
 }
 
+nlohmann::json GenerationWorkspace::evidence_json(const std::string& prompt,
+                                                  const EvidencedMotion& made,
+                                                  bool influence) const {
+  nlohmann::json list = hits_json(made.evidence.hits);
+  if (!influence) return list;
+  const std::vector<double> shares =
+      hit_influence(generator_, prompt, made.evidence.motions, made.options, made.generated);
+  for (size_t i = 0; i < shares.size(); ++i) {
+    for (auto& hit : list) {
+      if (hit.at("clip_id") == made.evidence.motions[i].clip_id) hit["influence"] = shares[i];
+    }
+  }
+  return list;
+}
+
 EvidencedMotion GenerationWorkspace::generate(const std::string& prompt, uint64_t seed,
                                               const ClipFilter& evidence, int frames) const {
   const Evidence found = find_evidence(prompt, evidence);
@@ -153,7 +169,8 @@ EvidencedMotion GenerationWorkspace::generate(const std::string& prompt, uint64_
     made.seed = number;
     made.length = choose_length(prompt, evidence, options);
     made.generated = generator_.generate(prompt, found.motions, options);
-    made.hits = found.hits;
+    made.evidence = found;
+    made.options = options;
     const Motion motion = made.generated.motion;
     candidates.add(std::move(made), number, motion);
   }

@@ -28,7 +28,8 @@ struct Evidence {
 /// A generated motion with the clips it was made from.
 struct EvidencedMotion {
   Generated generated;
-  std::vector<MotionHit> hits;
+  Evidence evidence;
+  GenerateOptions options;    ///< of the candidate that was chosen
   uint64_t seed = 0;          ///< of the candidate that was chosen
   nlohmann::json candidates;  ///< seeds and scores, the best first; empty for one candidate
   nlohmann::json length;      ///< how the length was estimated; null where it was given
@@ -57,6 +58,11 @@ class GenerationWorkspace {
   /// length of the retrieved motions.
   EvidencedMotion generate(const std::string& prompt, uint64_t seed, const ClipFilter& evidence,
                            int frames = 0) const;
+
+  /// hits_json() of what a motion was made from; with `influence` every hit that was used says
+  /// what leaving it out would change (hit_influence()).
+  nlohmann::json evidence_json(const std::string& prompt, const EvidencedMotion& made,
+                               bool influence) const;
 
   const SearchWorkspace& search() const { return search_; }
   const Generator& generator() const { return generator_; }

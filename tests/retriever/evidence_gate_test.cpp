@@ -16,7 +16,7 @@ TEST(EvidenceGate, ItsLimitsAreQuantiles) {
   const EvidenceGate gate = fit_gate(right, wrong);
   EXPECT_NEAR(gate.none, 0.4, 1e-9);
   EXPECT_NEAR(gate.all, 0.52, 1e-9);
-  EXPECT_EQ(gate.trust(0.4), 0);
+  EXPECT_NEAR(gate.trust(0.4), 0, 1e-9);
   EXPECT_NEAR(gate.trust(0.46), 0.5, 1e-9);
   EXPECT_EQ(gate.trust(0.52), 1);
   EXPECT_EQ(gate.trust(-1), 0);
