@@ -177,8 +177,7 @@ GenerationRun run_generation(const Database& database, const JudgeGallery& galle
   if (options.repeats < 1) throw Error("the evaluation needs at least one repeat");
   if (options.results_path.empty()) throw Error("the evaluation needs a path for its results");
   GenerationRun run;
-  run.prompts =
-      choose_label_prompts(database.clips(), options.prompt_split, options.prompts,
+  run.prompts = choose_label_prompts(database.clips(), options.prompt_split, options.prompts,
                                      options.seed, parse_prompt_draw(options.draw));
   run.jobs = make_jobs(run.prompts, options);
   run.protocol = make_protocol(database, gallery, judge, evaluator, options);

@@ -60,8 +60,8 @@ std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
     const size_t first = CounterRandom(mix_seed(seed, static_cast<uint64_t>(clip.id), 1))
                              .below(clip.captions.size());
     prompts.push_back({clip.id, clip.name, clip.group,
-                       clip.captions[(first + round) % clip.captions.size()], clip_content(clip), unseen,
-                       clip.frames, mix_seed(seed, prompts.size(), 2)});
+                       clip.captions[(first + round) % clip.captions.size()], clip_content(clip),
+                       unseen, clip.frames, mix_seed(seed, prompts.size(), 2)});
   }
   return prompts;
 }

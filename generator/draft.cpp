@@ -25,8 +25,9 @@ Motion resample(const Motion& motion, int frames) {
     const int after = std::min(before + 1, motion.frames - 1);
     const double share = place - before;
     for (int joint = 0; joint < motion.joints; ++joint) {
-      result.set(t, joint,
-                 (1 - share) * motion.position(before, joint) + share * motion.position(after, joint));
+      result.set(
+          t, joint,
+          (1 - share) * motion.position(before, joint) + share * motion.position(after, joint));
     }
   }
   return result;

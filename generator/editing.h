@@ -20,7 +20,7 @@ struct EditOptions {
   /// `seconds` is not read: the length is that of the motion. `follow` begins with 0: what
   /// is edited joins what stays, not a retrieved motion.
   GenerateOptions generate;
-  int extend_frames = 0;     ///< new frames behind the last one
+  int extend_frames = 0;  ///< new frames behind the last one
   SpliceOptions splice;
 };
 

@@ -240,9 +240,9 @@ TokenCanvas Generator::canvas(int64_t frames) const {
           torch::zeros({frames, config.rows}, torch::kBool)};
 }
 
-FillReport Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last, const std::string& prompt,
-                    const std::vector<RetrievedMotion>& hits, const GenerateOptions& options,
-                    GenerationTimes* times) const {
+FillReport Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last,
+                           const std::string& prompt, const std::vector<RetrievedMotion>& hits,
+                           const GenerateOptions& options, GenerationTimes* times) const {
   const torch::NoGradGuard no_grad;
   Stopwatch watch;
   GenerationTimes spent;
@@ -310,8 +310,7 @@ Generated Generator::generate(const std::string& prompt, const std::vector<Retri
   const int frames =
       motion_frames(options.seconds, {hits.begin(), hits.begin() + count}, impl_->skeleton.fps);
   TokenCanvas map = canvas((frames + kFramesPerToken - 1) / kFramesPerToken);
-  const FillReport filled =
-      fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times);
+  const FillReport filled = fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times);
   result.hits_used = filled.hits_used;
   result.followed = filled.followed;
   result.tokens = map.tokens;

@@ -94,7 +94,8 @@ class Generator {
   TokenCanvas canvas(int64_t frames) const;
   /// Samples the unknown cells of token frames [first, last) under one prompt; all
   /// are known afterwards. Long stretches are cut as plan_windows() says. Of the
-  /// options `seconds` is not read. `times` is added to. Throws Error for frames outside of the map, and as generate() does.
+  /// options `seconds` is not read. `times` is added to. Throws Error for frames outside of the
+  /// map, and as generate() does.
   FillReport fill(TokenCanvas& canvas, int64_t first, int64_t last, const std::string& prompt,
                   const std::vector<RetrievedMotion>& hits, const GenerateOptions& options,
                   GenerationTimes* times = nullptr) const;

@@ -32,14 +32,14 @@ struct WeightedSimilarity {
 /// `wrong` ones not at all: its limits are the median of `wrong` and the 5 % quantile of
 /// `right` (the least similarity up to which the hits have that share of the weight), the
 /// latter alone where it is less. Throws Error when either list is empty.
-EvidenceGate fit_gate(std::vector<WeightedSimilarity> right,
-                      std::vector<WeightedSimilarity> wrong);
+EvidenceGate fit_gate(std::vector<WeightedSimilarity> right, std::vector<WeightedSimilarity> wrong);
 
 /// The gate of a retriever. For every caption of a validation clip with a content: right is the
 /// best similarity to a training clip of that content and another group, wrong the best
 /// one to a training clip of another content, what search would find if the
 /// database did not hold what is asked for. Every content weighs the same: else the few that
-/// most clips show, and search knows best, would set limits that rare ones miss. Nothing where no clip has a content.
+/// most clips show, and search knows best, would set limits that rare ones miss. Nothing where no
+/// clip has a content.
 std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
                                          const std::vector<TrainingClip>& train,
                                          const std::vector<TrainingClip>& val);

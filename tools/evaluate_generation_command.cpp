@@ -52,15 +52,16 @@ void print_body(const GenerationSubset& subset, const char* name, const MotionFi
 void print_report(const GenerationReport& report) {
   const nlohmann::json& protocol = report.protocol;
   fmt::print(
-      "protocol {}: {} prompts of {}, drawn {}, {} generations each, {} draws of batches of {}; chance "
+      "protocol {}: {} prompts of {}, drawn {}, {} generations each, {} draws of batches of {}; "
+      "chance "
       "{:.1f} "
       "%\njudge {}, {} gallery clips; evaluator {}\n\n",
       protocol.at("protocol").get<std::string>(), report.subsets.front().prompts,
       protocol.at("prompt_split").get<std::string>(), protocol.at("draw").get<std::string>(),
-      protocol.at("repeats").get<int>(),
-      protocol.at("draws").get<int>(), protocol.at("batch").get<int>(),
-      100 * report.subsets.front().chance, protocol.at("judge").get<std::string>(),
-      protocol.at("gallery_clips").get<int>(), protocol.at("evaluator").get<std::string>());
+      protocol.at("repeats").get<int>(), protocol.at("draws").get<int>(),
+      protocol.at("batch").get<int>(), 100 * report.subsets.front().chance,
+      protocol.at("judge").get<std::string>(), protocol.at("gallery_clips").get<int>(),
+      protocol.at("evaluator").get<std::string>());
   fmt::print("{:<16}{:>7}  {:>14}  {:>14}  {:>14}  {:>14}  {:>16}  {:>16}  {:>15}\n", "prompts",
              "content", "R@1", "R@2", "R@3", "R@3, labels", "FID", "MM-Dist", "Diversity");
   for (const GenerationSubset& subset : report.subsets) {

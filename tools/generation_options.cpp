@@ -77,9 +77,8 @@ GenerationWorkspace::GenerationWorkspace(const std::map<std::string, ModelStage>
       "length {} feet {}",
       content_hash(digest), sampling.steps, sampling.guidance, sampling.temperature,
       sampling.top_share, sampling.correction_rounds, sampling.residual_guidance,
-      sampling.residual_temperature, options.no_retrieval ? "off" : "on",
-      options.generate.follow, options.best_of,
-      options.length, options.generate.held_feet ? "held" : "free");
+      sampling.residual_temperature, options.no_retrieval ? "off" : "on", options.generate.follow,
+      options.best_of, options.length, options.generate.held_feet ? "held" : "free");
 }
 
 GenerateOptions GenerationWorkspace::generate_options(uint64_t seed) const {

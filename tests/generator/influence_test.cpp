@@ -19,7 +19,8 @@ TEST(HitInfluence, TheHitThatIsFollowedDecides) {
   options.follow = 1;
   const Generated made = generator.generate("a person walks", hits, options);
   ASSERT_EQ(made.hits_used, 2);
-  const std::vector<double> influence = hit_influence(generator, "a person walks", hits, options, made);
+  const std::vector<double> influence =
+      hit_influence(generator, "a person walks", hits, options, made);
   ASSERT_EQ(influence.size(), 2u);
   EXPECT_EQ(influence[1], 0) << "a motion that is the first hit does not need the second";
   // By hand: the share of tokens in which the motion differs from the one without the first hit.

@@ -10,7 +10,7 @@ namespace {
 TEST(EvidenceGate, ItsLimitsAreQuantiles) {
   std::vector<WeightedSimilarity> right, wrong;
   for (int i = 1; i <= 100; ++i) {
-    right.push_back({0.5 + 0.004 * i, 2});  // the 5th of 100: 0.52
+    right.push_back({0.5 + 0.004 * i, 2});    // the 5th of 100: 0.52
     wrong.push_back({0.604 - 0.004 * i, 2});  // the 50th from below: 0.4
   }
   const EvidenceGate gate = fit_gate(right, wrong);

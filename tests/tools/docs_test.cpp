@@ -58,7 +58,8 @@ class DocsPage : public ::testing::TestWithParam<const char*> {
  protected:
   std::string page() const { return kDocs + GetParam(); }
 };
-INSTANTIATE_TEST_SUITE_P(Pages, DocsPage, ::testing::Values("search.md", "generation.md", "editing.md"));
+INSTANTIATE_TEST_SUITE_P(Pages, DocsPage,
+                         ::testing::Values("search.md", "generation.md", "editing.md"));
 
 TEST_P(DocsPage, EveryCommandRuns) {
   const ScratchFolder scratch;
