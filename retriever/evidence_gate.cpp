@@ -14,7 +14,7 @@ namespace remomask {
 
 namespace {
 
-constexpr double kRightOnesMissed = 0.05, kWrongOnesStopped = 0.05;
+constexpr double kRightOnesMissed = 0.05, kWrongOnesStopped = 0.5;
 constexpr size_t kTextBlock = 256;
 
 double quantile(std::vector<WeightedSimilarity>& values, double share) {

@@ -28,11 +28,10 @@ struct WeightedSimilarity {
   double similarity = 0, weight = 1;
 };
 
-/// The gate that 95 % of the `right` similarities pass in full, and of the `wrong` ones
-/// all but the lowest 5 % at least in part: a hit that is less like its sentence than nearly
-/// every wrong one says nothing. Its limits are these 5 % quantiles of `wrong` and of `right` (the
-/// least similarity up to which the hits have that share of the weight), the latter
-/// alone where it is less. Throws Error when either list is empty.
+/// The gate that 95 % of the `right` similarities pass in full and the lower half of the
+/// `wrong` ones not at all: its limits are the median of `wrong` and the 5 % quantile of
+/// `right` (the least similarity up to which the hits have that share of the weight), the
+/// latter alone where it is less. Throws Error when either list is empty.
 EvidenceGate fit_gate(std::vector<WeightedSimilarity> right, std::vector<WeightedSimilarity> wrong);
 
 /// The gate of a retriever. For every caption of a validation clip with a content: right is the

@@ -11,13 +11,13 @@ TEST(EvidenceGate, ItsLimitsAreQuantiles) {
   std::vector<WeightedSimilarity> right, wrong;
   for (int i = 1; i <= 100; ++i) {
     right.push_back({0.5 + 0.004 * i, 2});    // the 5th of 100: 0.52
-    wrong.push_back({0.604 - 0.004 * i, 2});  // the 5th from below: 0.22
+    wrong.push_back({0.604 - 0.004 * i, 2});  // the 50th from below: 0.4
   }
   const EvidenceGate gate = fit_gate(right, wrong);
-  EXPECT_NEAR(gate.none, 0.22, 1e-9);
+  EXPECT_NEAR(gate.none, 0.4, 1e-9);
   EXPECT_NEAR(gate.all, 0.52, 1e-9);
-  EXPECT_NEAR(gate.trust(0.22), 0, 1e-9);
-  EXPECT_NEAR(gate.trust(0.37), 0.5, 1e-9);
+  EXPECT_NEAR(gate.trust(0.4), 0, 1e-9);
+  EXPECT_NEAR(gate.trust(0.46), 0.5, 1e-9);
   EXPECT_EQ(gate.trust(0.52), 1);
   EXPECT_EQ(gate.trust(-1), 0);
   EXPECT_EQ(gate.trust(1), 1);
