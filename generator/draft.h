@@ -18,7 +18,7 @@ struct DraftCandidate {
 };
 
 /// The candidate to follow in a motion of `frames` frames. Candidates are scored by
-/// similarity x exp(-0.1 |l - l'| / max(l, l')) (the length term of ReMoDiffuse, eq. 5);
+/// similarity x exp(-0.1 |l - l'| / max(l, l')) (the length term of ReMoDiffuse);
 /// of those within 0.03 of the best one is drawn by the seed, so that several seeds
 /// follow several motions. Nothing for no candidate of at least 8 frames.
 std::optional<size_t> choose_draft(const std::vector<DraftCandidate>& candidates, int frames,

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "generator/stage_gate.h"
 #include "nn/model_file.h"
-#include "retriever/evidence_gate.h"
 
 namespace remomask {
 
@@ -85,15 +85,15 @@ void train_stage(const TrainingRecipe& recipe, const std::string& stage, const S
 }
 
 void join_stages(const TrainingRecipe& recipe, const StageFile& file, const TrainingSplits& clips,
-                 const std::string& model_path) {
+                 const std::string& model_path, const Monitor& monitor) {
   std::vector<ModelStage> stages;
   for (const std::string& name : recipe_stages(recipe)) {
     if (name == "text") continue;
     ModelStage stage = load_stage(file(name), name);
     if (name == "masked" && masked_config(stage.config).max_hits > 0) {
       const Retriever retriever(load_stage(file("retriever"), "retriever"));
-      const auto gate = measure_gate(retriever, clips.train, clips.val);
-      if (gate) stage.config[kEvidenceGateKey] = *gate;
+      const auto gate = measure_gate(retriever, clips.train, clips.val, monitor);
+      if (gate) set_stage_gate(stage, *gate);
     }
     stages.push_back(std::move(stage));
   }

@@ -41,6 +41,6 @@ void train_stage(const TrainingRecipe& recipe, const std::string& stage, const S
 /// Puts the stages of a recipe but "text" into one model file in half precision, with the
 /// evidence gate of its retriever (measure_gate()) where it reads hits.
 void join_stages(const TrainingRecipe& recipe, const StageFile& file, const TrainingSplits& clips,
-                 const std::string& model_path);
+                 const std::string& model_path, const Monitor& monitor);
 
 }  // namespace remomask

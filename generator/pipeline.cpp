@@ -10,10 +10,10 @@
 #include "base/error.h"
 #include "generator/draft.h"
 #include "generator/motion_finish.h"
+#include "generator/stage_gate.h"
 #include "generator/token_windows.h"
 #include "generator/tokenizer_network.h"
 #include "motion/features.h"
-#include "retriever/evidence_gate.h"
 
 namespace remomask {
 
@@ -48,12 +48,6 @@ const Skeleton& skeleton_named(const std::string& name) {
   if (name == "humanml3d") return humanml_skeleton();
   if (name == "kit") return kit_skeleton();
   throw Error("unknown skeleton \"" + name + "\"; use humanml3d or kit");
-}
-
-std::optional<EvidenceGate> stage_gate(const ModelStage& masked) {
-  const auto found = masked.config.find(kEvidenceGateKey);
-  if (found == masked.config.end()) return std::nullopt;
-  return found->get<EvidenceGate>();
 }
 
 class Stopwatch {

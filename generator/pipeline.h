@@ -49,7 +49,7 @@ struct GenerationTimes {
 /// The hit whose codes a motion started from.
 struct FollowedHit {
   int64_t clip_id = 0;
-  double share = 0;  ///< of the token frames
+  double share = 0;  ///< of the token frames that it covers
 };
 
 /// What a stretch was filled from.

@@ -9,13 +9,14 @@
 #include <string>
 
 #include "base/error.h"
+#include "retriever/retrieval_metrics.h"
 
 namespace remomask {
 
 namespace {
 
 constexpr double kRightOnesMissed = 0.05, kWrongOnesStopped = 0.5;
-constexpr size_t kTextBlock = 256;
+constexpr size_t kMotionBlock = 256;
 
 double quantile(std::vector<WeightedSimilarity>& values, double share) {
   std::sort(values.begin(), values.end(),
@@ -57,45 +58,48 @@ EvidenceGate fit_gate(std::vector<WeightedSimilarity> right,
 
 std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
                                          const std::vector<TrainingClip>& train,
-                                         const std::vector<TrainingClip>& val) {
+                                         const std::vector<TrainingClip>& val,
+                                         const Monitor& monitor) {
   const torch::NoGradGuard no_grad;
-  const auto gallery = clips_with_content(train), asked = clips_with_content(val);
-  if (gallery.empty() || asked.empty()) return std::nullopt;
-  std::vector<const Features*> features;
-  for (const auto* clip : gallery) features.push_back(&clip->features);
-  const at::Tensor motions = retriever.encode_motion(features).global;
-  std::vector<std::string> captions;
-  std::vector<const TrainingClip*> owners;
-  std::map<std::string, double> count;
-  for (const auto* clip : asked) {
-    for (const auto& caption : clip->captions) {
-      captions.push_back(caption);
-      owners.push_back(clip);
-      ++count[clip->content];
+  const auto gallery = clips_with_content(train);
+  const CaptionSet captions = caption_set(val, /*all_captions=*/true);
+  if (gallery.empty() || captions.texts.empty()) return std::nullopt;
+  const double total = static_cast<double>(gallery.size() + captions.texts.size());
+  const auto progress = [&](size_t done) {
+    if (monitor.stop_requested()) throw Interrupted("measuring the evidence gate stopped");
+    monitor.report({"measure evidence gate", static_cast<double>(done), total, ""});
+  };
+  std::vector<at::Tensor> vectors;
+  for (size_t first = 0; first < gallery.size(); first += kMotionBlock) {
+    std::vector<const Features*> block;
+    for (size_t c = first; c < std::min(gallery.size(), first + kMotionBlock); ++c) {
+      block.push_back(&gallery[c]->features);
     }
+    vectors.push_back(retriever.encode_motion(block).global);
+    progress(first + block.size());
   }
+  const at::Tensor texts = encode_texts(retriever, captions.texts, [&](size_t done) {
+                             progress(gallery.size() + done);
+                           }).first;
+  const at::Tensor similarity = texts.matmul(torch::cat(vectors).transpose(0, 1)).contiguous();
+  std::map<std::string, double> count;
+  for (const size_t clip : captions.clips) ++count[val[clip].content];
   std::vector<WeightedSimilarity> right, wrong;
-  for (size_t first = 0; first < captions.size(); first += kTextBlock) {
-    const size_t last = std::min(captions.size(), first + kTextBlock);
-    const std::vector<std::string> block(captions.begin() + static_cast<std::ptrdiff_t>(first),
-                                         captions.begin() + static_cast<std::ptrdiff_t>(last));
-    const at::Tensor similarity =
-        retriever.encode_text(block).query.matmul(motions.transpose(0, 1)).contiguous();
-    for (size_t i = first; i < last; ++i) {
-      const float* row =
-          similarity.data_ptr<float>() + (i - first) * static_cast<size_t>(similarity.size(1));
-      double best_right = -std::numeric_limits<double>::infinity(), best_wrong = best_right;
-      for (size_t j = 0; j < gallery.size(); ++j) {
-        if (gallery[j]->content != owners[i]->content) {
-          best_wrong = std::max(best_wrong, static_cast<double>(row[j]));
-        } else if (gallery[j]->group != owners[i]->group) {
-          best_right = std::max(best_right, static_cast<double>(row[j]));
-        }
+  for (size_t i = 0; i < captions.clips.size(); ++i) {
+    const TrainingClip& asked = val[captions.clips[i]];
+    if (asked.content.empty()) continue;
+    const float* row = similarity.data_ptr<float>() + i * gallery.size();
+    double best_right = -std::numeric_limits<double>::infinity(), best_wrong = best_right;
+    for (size_t j = 0; j < gallery.size(); ++j) {
+      if (gallery[j]->content != asked.content) {
+        best_wrong = std::max(best_wrong, static_cast<double>(row[j]));
+      } else if (gallery[j]->group != asked.group) {
+        best_right = std::max(best_right, static_cast<double>(row[j]));
       }
-      const double weight = 1 / count.at(owners[i]->content);
-      if (std::isfinite(best_right)) right.push_back({best_right, weight});
-      if (std::isfinite(best_wrong)) wrong.push_back({best_wrong, weight});
     }
+    const double weight = 1 / count.at(asked.content);
+    if (std::isfinite(best_right)) right.push_back({best_right, weight});
+    if (std::isfinite(best_wrong)) wrong.push_back({best_wrong, weight});
   }
   if (right.empty() || wrong.empty()) return std::nullopt;
   return fit_gate(std::move(right), std::move(wrong));

@@ -4,13 +4,11 @@
 #include <optional>
 #include <vector>
 
+#include "base/progress.h"
 #include "db/training_set.h"
 #include "retriever/retriever.h"
 
 namespace remomask {
-
-/// Where the config of a model's masked stage holds its gate.
-inline constexpr const char* kEvidenceGateKey = "evidence_gate";
 
 /// How far a hit may be trusted, by its similarity (cosine of sentence and motion): a
 /// generator takes none of it below `none`, the full share from `all` on, and a
@@ -39,9 +37,10 @@ EvidenceGate fit_gate(std::vector<WeightedSimilarity> right, std::vector<Weighte
 /// one to a training clip of another content, what search would find if the
 /// database did not hold what is asked for. Every content weighs the same: else the few that
 /// most clips show, and search knows best, would set limits that rare ones miss. Nothing where no
-/// clip has a content.
+/// clip has a content. Throws Interrupted when asked to stop.
 std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
                                          const std::vector<TrainingClip>& train,
-                                         const std::vector<TrainingClip>& val);
+                                         const std::vector<TrainingClip>& val,
+                                         const Monitor& monitor);
 
 }  // namespace remomask

@@ -126,7 +126,7 @@ void run_training(const TrainOptions& options, Program& program) {
     }
     train_stage(recipe, stage, file, clips, prepared, program.monitor());
   }
-  if (all) join_stages(recipe, file, clips, file("model"));
+  if (all) join_stages(recipe, file, clips, file("model"), program.monitor());
   program.finish_progress();
   fmt::print("{}\n", file(all ? "model" : options.stage));
 }

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "base/error.h"
 #include "generator/tokenizer_network.h"
 #include "motion/features.h"
 #include "motion/skeleton.h"
@@ -149,6 +150,15 @@ TEST(Draft, TheGateDecidesHowFarAHitIsFollowed) {
   EXPECT_EQ(share(0.5), 0);
   EXPECT_NEAR(share(0.7), 0.4, 1e-9);
   EXPECT_EQ(share(0.9), 0.8);
+}
+
+TEST(Draft, ADamagedGateIsAnError) {
+  for (const char* gate : {R"({"none": "low", "all": 0.8})", R"({"none": 0.5})", "[]",
+                           R"({"none": 0.9, "all": 0.8})", R"({"none": null, "all": 0.8})"}) {
+    auto stages = tiny_model().stages;
+    stages.at("masked").config["evidence_gate"] = nlohmann::json::parse(gate);
+    EXPECT_THROW(Generator{stages}, Error) << gate;
+  }
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST(Variants, TrainStoreAndGenerate) {
       train_stage(recipe, stage, file, clips, prepared, {});
       EXPECT_FALSE(fs::exists(file(stage) + ".checkpoint"));
     }
-    join_stages(recipe, file, clips, file("model"));
+    join_stages(recipe, file, clips, file("model"), {});
     const auto stages = load_model(file("model"));
     const nlohmann::json masked = stages.at("masked").config;
     const nlohmann::json retriever = stages.at("retriever").config;

@@ -1,0 +1,31 @@
+#include "generator/stage_gate.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace remomask {
+
+namespace {
+
+constexpr const char* kKey = "evidence_gate";
+
+}  // namespace
+
+void set_stage_gate(ModelStage& masked, const EvidenceGate& gate) { masked.config[kKey] = gate; }
+
+std::optional<EvidenceGate> stage_gate(const ModelStage& masked) {
+  const auto found = masked.config.find(kKey);
+  if (found == masked.config.end()) return std::nullopt;
+  EvidenceGate gate;
+  try {
+    gate = found->get<EvidenceGate>();
+  } catch (const nlohmann::json::exception&) {
+    gate.none = NAN;
+  }
+  if (std::isfinite(gate.none) && std::isfinite(gate.all) && gate.none <= gate.all) return gate;
+  throw Error("the evidence gate of this model is damaged: " + found->dump() +
+              "; make the model file anew with \"remomask train all\"");
+}
+
+}  // namespace remomask
