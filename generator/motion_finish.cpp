@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "motion/foot_anchor.h"
+#include "motion/foot_clearance.h"
 #include "motion/foot_lock.h"
 
 namespace remomask {
@@ -87,6 +88,7 @@ void hold_feet(Motion& motion, const Features& features, const Skeleton& skeleto
   FootLockOptions lock;
   lock.speed = kSlidingSpeed;
   lock_feet(motion, Motion(motion), /*floor=*/0, all, skeleton, lock);
+  raise_swings(motion, skeleton);
 }
 
 double lift_to_floor(Motion& motion, const Skeleton& skeleton, double tolerance) {

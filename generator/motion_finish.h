@@ -15,7 +15,8 @@ void smooth_over_time(Motion& motion, double sigma);
 
 /// Takes the sliding out of standing feet: the body is anchored to the feet that
 /// `features`, of the same frames, say to stand (anchor_to_feet), then each of
-/// them is held where it stands (lock_feet). Bone lengths stay.
+/// them is held where it stands (lock_feet), and swinging feet that brush over the
+/// floor are raised (raise_swings). Bone lengths stay.
 void hold_feet(Motion& motion, const Features& features, const Skeleton& skeleton);
 
 /// Raises a motion whose lowest foot is more than `tolerance` (metres) below

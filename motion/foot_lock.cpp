@@ -3,20 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/pose_fit.h"
+#include "motion/leg.h"
 
 namespace remomask {
 
 namespace {
-
-struct Leg {
-  int hip, knee, ankle, toe;
-};
-
-Leg leg_of(const std::vector<int>& feet, const Skeleton& skeleton) {
-  const int ankle = feet.front(), knee = skeleton.parents[ankle];
-  return {skeleton.parents[knee], knee, ankle, feet.back()};
-}
 
 /// Weight 1 at a corrected frame, 0 at `fade + 1` frames from it.
 double fade_weight(int distance, int fade) {
@@ -41,21 +32,14 @@ class LegLock {
       : motion_(motion), guide_(guide), floor_(floor), leg_(leg), fps_(fps), options_(options) {}
 
   /// Corrects frames [run.first, run.last).
-  void correct(const FrameRun& run, double upper, double lower) {
+  void correct(const FrameRun& run) {
     const std::vector<Vec3> shifts = shifts_of(run);
     for (int t = run.first; t < run.last; ++t) {
       Vec3 shift = shifts[static_cast<size_t>(t - run.first)];
       const double lowest =
           std::min(motion_.at(t, leg_.toe)[1], motion_.at(t, leg_.ankle)[1]) + shift.y();
       shift.y() += std::max(0.0, floor_ - lowest);
-      if (shift.norm() < 1e-6) continue;
-      const Vec3 hip = motion_.position(t, leg_.hip), ankle = motion_.position(t, leg_.ankle);
-      const Vec3 foot = motion_.position(t, leg_.toe) - ankle;
-      Vec3 end = ankle + shift;
-      const Vec3 knee = bend_joint(hip, end, motion_.position(t, leg_.knee), upper, lower);
-      motion_.set(t, leg_.knee, knee);
-      motion_.set(t, leg_.ankle, end);
-      motion_.set(t, leg_.toe, end + foot);
+      if (shift.norm() >= 1e-6) move_foot(motion_, t, leg_, shift);
     }
   }
 
@@ -129,13 +113,9 @@ void lock_feet(Motion& motion, const Motion& guide, double floor, const PartMask
                const Skeleton& skeleton, const FootLockOptions& options) {
   const std::vector<int> parts = joint_parts(skeleton);
   for (const auto* feet : {&skeleton.left_feet, &skeleton.right_feet}) {
-    const Leg leg = leg_of(*feet, skeleton);
-    LegLock lock(motion, guide, floor, leg, skeleton.fps, options);
-    for (const FrameRun& run : part_runs(mask, parts[static_cast<size_t>(leg.toe)])) {
-      const auto bone = [&](int a, int b) {
-        return (motion.position(run.first, a) - motion.position(run.first, b)).norm();
-      };
-      lock.correct(run, bone(leg.hip, leg.knee), bone(leg.knee, leg.ankle));
+    for (const FrameRun& run : part_runs(mask, parts[static_cast<size_t>(feet->back())])) {
+      const Leg leg = leg_of(*feet, skeleton, motion, run.first);
+      LegLock(motion, guide, floor, leg, skeleton.fps, options).correct(run);
     }
   }
 }
