@@ -39,6 +39,19 @@ struct CaptionNumbers {
   }
 };
 
+/// Numbers the meanings of clips; a clip without one gets a number of its own.
+struct MeaningNumbers {
+  std::map<std::string, int> numbers;
+  int next = 0;
+
+  int number(const std::string& meaning) {
+    if (meaning.empty()) return next++;
+    const auto [place, is_new] = numbers.emplace(meaning, next);
+    if (is_new) ++next;
+    return place->second;
+  }
+};
+
 CaptionFeatures encode_captions(const std::vector<std::string>& captions,
                                 const Retriever& retriever, const Monitor& monitor) {
   CaptionFeatures features;
@@ -66,7 +79,8 @@ CaptionFeatures encode_captions(const std::vector<std::string>& captions,
 }
 
 TokenSplit tokenize_split(const std::vector<const TrainingClip*>& clips, bool second_offset,
-                          const Tokenizer& tokenizer, CaptionNumbers& captions) {
+                          const Tokenizer& tokenizer, CaptionNumbers& captions,
+                          MeaningNumbers& meanings) {
   TokenSplit split;
   std::vector<const Features*> whole;
   std::vector<Features> shifted;
@@ -86,6 +100,7 @@ TokenSplit tokenize_split(const std::vector<const TrainingClip*>& clips, bool se
     for (const auto& caption : clips[i]->captions)
       clip.captions.push_back(captions.number(caption));
     clip.group = clips[i]->group;
+    clip.meaning = meanings.number(clips[i]->meaning);
     clip.first_query = query;
     query += static_cast<int64_t>(clip.captions.size());
     split.clips.push_back(std::move(clip));
@@ -101,21 +116,25 @@ at::Tensor encode_motions(const std::vector<const TrainingClip*>& clips,
 }
 
 RetrievalTable split_table(const TokenSplit& split, const at::Tensor& own_motion,
-                           const GeneratorData& data) {
+                           const GeneratorData& data, bool with_own_meaning) {
   std::vector<int64_t> captions, clips;
   RetrievalQueries queries;
   for (size_t i = 0; i < split.clips.size(); ++i) {
     for (const int64_t caption : split.clips[i].captions) {
       captions.push_back(caption);
       clips.push_back(static_cast<int64_t>(i));
-      queries.groups.push_back(split.clips[i].group);
+      queries.kinds.groups.push_back(split.clips[i].group);
+      if (!with_own_meaning) queries.kinds.meanings.push_back(split.clips[i].meaning);
     }
   }
   queries.text = data.captions.query.index_select(0, torch::tensor(captions, torch::kLong));
   queries.own_motion = own_motion.index_select(0, torch::tensor(clips, torch::kLong));
-  std::vector<int> groups;
-  for (const auto& clip : data.train.clips) groups.push_back(clip.group);
-  return build_retrieval_table(queries, data.motion, groups);
+  MotionKinds kinds;
+  for (const auto& clip : data.train.clips) {
+    kinds.groups.push_back(clip.group);
+    if (!with_own_meaning) kinds.meanings.push_back(clip.meaning);
+  }
+  return build_retrieval_table(queries, data.motion, kinds);
 }
 
 /// Base tokens of the best hits, padded to the longest.
@@ -168,9 +187,10 @@ GeneratorData prepare_generator_data(const std::vector<TrainingClip>& train,
   data.levels = tokenizer.config().levels;
   data.codes = tokenizer.config().codes;
   CaptionNumbers captions;
+  MeaningNumbers meanings;
   monitor.report({"encode motions", 0, 2, "tokens"});
-  data.train = tokenize_split(train_clips, true, tokenizer, captions);
-  data.val = tokenize_split(val_clips, false, tokenizer, captions);
+  data.train = tokenize_split(train_clips, true, tokenizer, captions, meanings);
+  data.val = tokenize_split(val_clips, false, tokenizer, captions, meanings);
   for (size_t i = 0; i < train_clips.size(); ++i) {
     data.train.clips[i].source = static_cast<size_t>(train_clips[i] - train.data());
   }
@@ -184,10 +204,12 @@ GeneratorData prepare_generator_data(const std::vector<TrainingClip>& train,
     texts.push_back(mean / mean.norm().clamp_min(1e-9));
   }
   data.motion_text = torch::stack(texts);
-  data.train.hits = split_table(data.train, data.motion, data);
-  if (!val_clips.empty()) {
-    data.val.hits = split_table(data.val, encode_motions(val_clips, retriever), data);
-  }
+  const auto find_hits = [&](TokenSplit& split, const at::Tensor& own_motion) {
+    split.hits = split_table(split, own_motion, data, true);
+    split.unfamiliar_hits = split_table(split, own_motion, data, false);
+  };
+  find_hits(data.train, data.motion);
+  if (!val_clips.empty()) find_hits(data.val, encode_motions(val_clips, retriever));
   monitor.report({"encode motions", 2, 2, ""});
   return data;
 }

@@ -25,12 +25,16 @@ struct TokenClip {
   std::vector<int64_t> captions;   ///< indices into CaptionFeatures
   int64_t first_query = 0;         ///< row of its first caption in the retrieval table
   int group = 0;
+  int meaning = 0;    ///< equal for clips of equal content and style, else unlike
   size_t source = 0;  ///< number of the TrainingClip it was made from
 };
 
 struct TokenSplit {
   std::vector<TokenClip> clips;
   RetrievalTable hits;  ///< one row for each caption of each clip
+  /// The same among the motions that do not show the content in the style of the clip,
+  /// which is what a prompt finds whose pair of both is in no database.
+  RetrievalTable unfamiliar_hits;
 };
 
 /// Everything that training the transformers needs, computed once: tokens,

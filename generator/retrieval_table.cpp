@@ -25,7 +25,7 @@ DrawnHit hit_at(const RetrievalTable& table, int64_t query, int64_t rank) {
 }  // namespace
 
 RetrievalTable build_retrieval_table(const RetrievalQueries& queries, const at::Tensor& motions,
-                                     const std::vector<int>& groups,
+                                     const MotionKinds& kinds,
                                      const RetrievalTableOptions& options) {
   const torch::NoGradGuard no_grad;
   const int64_t count = queries.text.size(0), database = motions.size(0);
@@ -35,16 +35,23 @@ RetrievalTable build_retrieval_table(const RetrievalQueries& queries, const at::
   const auto int_tensor = [](const std::vector<int>& values) {
     return torch::tensor(std::vector<int64_t>(values.begin(), values.end()), torch::kLong);
   };
-  const auto query_groups = int_tensor(queries.groups), motion_groups = int_tensor(groups);
+  const auto query_groups = int_tensor(queries.kinds.groups);
+  const auto motion_groups = int_tensor(kinds.groups);
+  const auto query_meanings = int_tensor(queries.kinds.meanings);
+  const auto motion_meanings = int_tensor(kinds.meanings);
+  const auto equal = [](const at::Tensor& query, const at::Tensor& motion) {
+    return query.unsqueeze(1).eq(motion.unsqueeze(0));
+  };
   const auto transposed = motions.t();
   for (int64_t first = 0; first < count; first += options.block) {
     const int64_t last = std::min(count, first + options.block);
     auto scores = torch::matmul(queries.text.slice(0, first, last), transposed);
     const auto own = torch::matmul(queries.own_motion.slice(0, first, last), transposed);
-    const auto excluded = query_groups.slice(0, first, last)
-                              .unsqueeze(1)
-                              .eq(motion_groups.unsqueeze(0))
-                              .logical_or(own > options.duplicate_cosine);
+    auto excluded = equal(query_groups.slice(0, first, last), motion_groups)
+                        .logical_or_(own > options.duplicate_cosine);
+    if (!kinds.meanings.empty()) {
+      excluded.logical_or_(equal(query_meanings.slice(0, first, last), motion_meanings));
+    }
     scores.masked_fill_(excluded, -std::numeric_limits<float>::infinity());
     const auto [values, indices] = torch::topk(scores, ranks, 1);
     const auto missing = values < -2;

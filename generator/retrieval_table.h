@@ -21,18 +21,24 @@ struct RetrievalTable {
   at::Tensor similarity;  ///< float [Q, ranks], cosine
 };
 
-/// Queries and the motions they belong to, against a database of motions.
-struct RetrievalQueries {
-  at::Tensor text;          ///< [Q, E] query vectors, L2-normalised
-  at::Tensor own_motion;    ///< [Q, E] vector of the motion that the caption describes
-  std::vector<int> groups;  ///< [Q] its group (TrainingClip::group)
+/// What motions are, for telling which are the same; one entry a motion.
+struct MotionKinds {
+  std::vector<int> groups;    ///< TrainingClip::group: clip, mirror twin, windows
+  std::vector<int> meanings;  ///< equal for equal content and style; empty: they may be equal
 };
 
-/// Neighbours of every query among `motions` [N, E] with `groups` [N]. Never
-/// the query's own group (clip, mirror twin, windows), never a near-duplicate
-/// of its motion: at test time the answer is not in the database either.
+/// Queries and the motions they belong to, against a database of motions.
+struct RetrievalQueries {
+  at::Tensor text;        ///< [Q, E] query vectors, L2-normalised
+  at::Tensor own_motion;  ///< [Q, E] vector of the motion that the caption describes
+  MotionKinds kinds;      ///< [Q] of that motion
+};
+
+/// Neighbours of every query among `motions` [N, E] of `kinds` [N]. Never the
+/// query's own group, never its meaning where meanings are given, never a
+/// near-duplicate of its motion: at test time the answer is not in the database either.
 RetrievalTable build_retrieval_table(const RetrievalQueries& queries, const at::Tensor& motions,
-                                     const std::vector<int>& groups,
+                                     const MotionKinds& kinds,
                                      const RetrievalTableOptions& options = {});
 
 struct DrawnHit {

@@ -89,10 +89,12 @@ TransformerBatch masked_batch(const GeneratorData& data, const std::vector<size_
     maps.push_back(choose_view(clip, random, caption).slice(2, 0, 1));
     ConditionDrop drop = draw_condition_drop(random);
     if (!config.drops_conditions) drop = {};
-    samples.push_back({clip.captions[static_cast<size_t>(caption)],
-                       draw_hits(data.train.hits, clip.first_query + caption, config.max_hits,
-                                 options.noise_hits, random),
-                       drop.use_text, drop.use_retrieval});
+    const RetrievalTable& hits =
+        random.uniform() < options.unfamiliar_hits ? data.train.unfamiliar_hits : data.train.hits;
+    samples.push_back(
+        {clip.captions[static_cast<size_t>(caption)],
+         draw_hits(hits, clip.first_query + caption, config.max_hits, options.noise_hits, random),
+         drop.use_text, drop.use_retrieval});
     randoms.push_back(random);
   }
   const PaddedTokens padded = pad_tokens(maps);
@@ -181,17 +183,18 @@ struct MeanLoss {
 
 std::map<std::string, double> validate_masked(MaskedTransformer& model, const GeneratorData& data,
                                               const TransformerTrainingOptions& options) {
-  MeanLoss both, text_only;
+  MeanLoss both, unfamiliar, text_only;
   int64_t number = 0;
   for (const auto& members : validation_batches(data, options)) {
     std::vector<at::Tensor> maps;
-    std::vector<ConditionSample> samples;
+    std::vector<ConditionSample> samples, unfamiliar_samples;
+    const int64_t max_hits = model->config().max_hits;
     for (const size_t member : members) {
       const TokenClip& clip = data.val.clips[member];
       maps.push_back(clip.tokens[0].slice(2, 0, 1));
-      samples.push_back({clip.captions[0],
-                         best_hits(data.val.hits, clip.first_query, model->config().max_hits), true,
-                         true});
+      samples.push_back({clip.captions[0], best_hits(data.val.hits, clip.first_query, max_hits)});
+      unfamiliar_samples.push_back(
+          {clip.captions[0], best_hits(data.val.unfamiliar_hits, clip.first_query, max_hits)});
     }
     const PaddedTokens padded = pad_tokens(maps);
     auto tokens = padded.tokens.squeeze(3).contiguous();
@@ -204,16 +207,20 @@ std::map<std::string, double> validate_masked(MaskedTransformer& model, const Ge
                   targets.data_ptr<int64_t>() + first);
     }
     ++number;
-    Condition condition =
-        make_condition(data, samples, model->config().max_hits, model->config().sequence_hits);
-    both.add(
-        token_loss(model->forward(tokens, model->prepare(condition), padded.frame_mask), targets));
+    const auto loss_under = [&](const Condition& condition) {
+      return token_loss(model->forward(tokens, model->prepare(condition), padded.frame_mask),
+                        targets);
+    };
+    const int64_t sequence_hits = model->config().sequence_hits;
+    Condition condition = make_condition(data, samples, max_hits, sequence_hits);
+    both.add(loss_under(condition));
+    unfamiliar.add(loss_under(make_condition(data, unfamiliar_samples, max_hits, sequence_hits)));
     condition.use_retrieval = torch::zeros_like(condition.use_retrieval);
-    text_only.add(
-        token_loss(model->forward(tokens, model->prepare(condition), padded.frame_mask), targets));
+    text_only.add(loss_under(condition));
   }
   return {{"val_loss", both.mean_loss()},
           {"val_accuracy", both.mean_accuracy()},
+          {"val_accuracy_unfamiliar_hits", unfamiliar.mean_accuracy()},
           {"val_accuracy_text_only", text_only.mean_accuracy()}};
 }
 
@@ -290,6 +297,7 @@ nlohmann::json run_training(Model& model, const GeneratorData& data,
 nlohmann::json options_document(const TransformerTrainingOptions& options) {
   return {{"batch", options.batch},
           {"noise_hits", options.noise_hits},
+          {"unfamiliar_hits", options.unfamiliar_hits},
           {"text_drop", options.text_drop},
           {"history_corruption", options.history_corruption}};
 }

@@ -12,6 +12,7 @@ struct TransformerTrainingOptions {
   TrainerOptions trainer;
   int64_t batch = 64;
   double noise_hits = 0.1;          ///< share of hits replaced by distant ranks
+  double unfamiliar_hits = 0.3;     ///< share of samples with TokenSplit::unfamiliar_hits
   double text_drop = 0.1;           ///< residual model: share of samples without text
   double history_corruption = 0.0;  ///< residual model: share of lower tokens made random
   int64_t validate_every = 500;
@@ -24,8 +25,8 @@ nlohmann::json options_document(const TransformerTrainingOptions& options);
 /// Trains the masked transformer on the base level. Masks (masking.h), drops
 /// of conditions, hits, captions and frame offsets are functions of (seed,
 /// step, sample). Validation reports loss and accuracy on `val` with both
-/// conditions, and the accuracy with text alone. Sizes of map, text and
-/// embedding are taken from the data; the history is in config["history"].
+/// conditions, the accuracy with TokenSplit::unfamiliar_hits, and with text alone. Sizes of map,
+/// text and embedding are taken from the data; the history is in config["history"].
 ModelStage train_masked(MaskedConfig config, const GeneratorData& data,
                         const TransformerTrainingOptions& options, const Monitor& monitor);
 

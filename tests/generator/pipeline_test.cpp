@@ -28,6 +28,11 @@ TEST(GeneratorData, ClipsBecomeTokensFeaturesAndNeighbours) {
       for (const DrawnHit& hit : best_hits(data.train.hits, clip.first_query + caption, 8)) {
         EXPECT_NE(data.train.clips[hit.motion].group, clip.group);
       }
+      for (const DrawnHit& hit :
+           best_hits(data.train.unfamiliar_hits, clip.first_query + caption, 8)) {
+        EXPECT_NE(data.train.clips[hit.motion].group, clip.group);
+        EXPECT_NE(data.train.clips[hit.motion].meaning, clip.meaning);
+      }
     }
   }
   // Text features are those of the retriever, whatever they were encoded with.

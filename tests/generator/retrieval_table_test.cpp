@@ -18,10 +18,15 @@ TEST(RetrievalTable, HandMadeNeighbours) {
   RetrievalQueries queries;
   queries.text = torch::tensor({1.f, 0.f}).reshape({1, 2});
   queries.own_motion = torch::tensor({0.f, -1.f}).reshape({1, 2});
-  queries.groups = {1};
-  const RetrievalTable table = build_retrieval_table(queries, motions, {0, 1, 2, 3});
+  queries.kinds.groups = {1};
+  const RetrievalTable table = build_retrieval_table(queries, motions, {{0, 1, 2, 3}, {}});
   EXPECT_TRUE(torch::equal(table.neighbours, torch::tensor({{0, 2, 3, -1}}, torch::kLong)));
   EXPECT_NEAR(table.similarity[0][1].item<float>(), 0.6f, 1e-6f);
+
+  queries.kinds.meanings = {7};  // what motion 2 shows too
+  const RetrievalTable others =
+      build_retrieval_table(queries, motions, {{0, 1, 2, 3}, {6, 7, 7, 5}});
+  EXPECT_TRUE(torch::equal(others.neighbours, torch::tensor({{0, 3, -1, -1}}, torch::kLong)));
 }
 
 TEST(RetrievalTable, NeverReturnsAnExcludedMotion) {
@@ -34,10 +39,10 @@ TEST(RetrievalTable, NeverReturnsAnExcludedMotion) {
   RetrievalQueries queries;
   queries.text = motions + 0.1 * torch::randn({count, 8});
   queries.own_motion = motions;
-  queries.groups = groups;
+  queries.kinds.groups = groups;
   RetrievalTableOptions options;
   options.block = 7;
-  const RetrievalTable table = build_retrieval_table(queries, motions, groups, options);
+  const RetrievalTable table = build_retrieval_table(queries, motions, {groups, {}}, options);
   for (int64_t q = 0; q < count; ++q) {
     for (int64_t rank = 0; rank < table.neighbours.size(1); ++rank) {
       const int64_t hit = table.neighbours[q][rank].item<int64_t>();
@@ -60,8 +65,8 @@ TEST(RetrievalTable, DrawsUniformCountsAndSomeNoise) {
   const auto motions = unit_rows(count, 16);
   std::vector<int> groups(count);
   for (int i = 0; i < count; ++i) groups[i] = i;
-  const RetrievalTable table =
-      build_retrieval_table({unit_rows(1, 16), unit_rows(1, 16), {-1}}, motions, groups);
+  const RetrievalTable table = build_retrieval_table(
+      {unit_rows(1, 16), unit_rows(1, 16), {{-1}, {}}}, motions, {groups, {}});
   std::set<int64_t> best;
   for (int i = 0; i < 20; ++i) best.insert(table.neighbours[0][i].item<int64_t>());
   CounterRandom random(9);

@@ -32,6 +32,7 @@ GeneratorData toy_data(int64_t train_clips, int64_t val_clips) {
       result.clips.push_back(clip);
     }
     result.hits = {torch::randint(train_clips, {count, 4}, torch::kLong), torch::rand({count, 4})};
+    result.unfamiliar_hits = result.hits;
     return result;
   };
   data.captions.states = torch::randn({10, 12});
