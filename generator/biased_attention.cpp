@@ -1,6 +1,7 @@
 #include "generator/biased_attention.h"
 
 #include <ATen/Parallel.h>
+#include <ATen/record_function.h>
 #include <torch/csrc/autograd/custom_function.h>
 #include <torch/types.h>
 
@@ -39,6 +40,7 @@ struct FusedAttention : public torch::autograd::Function<FusedAttention> {
     const at::Tensor q = with_dense_rows(query), k = with_dense_rows(keys),
                      v = with_dense_rows(values);
     const at::Tensor position = position_bias.contiguous(), key = key_bias.contiguous();
+    RECORD_FUNCTION("remomask::attention", std::vector<c10::IValue>({q, k}));
     const int64_t batch = q.size(0), heads = position.size(0);
     const HeadShape shape{q.size(1), k.size(1), q.size(2) / heads};
     const int64_t map = shape.padded_queries() * shape.padded_keys();
@@ -64,6 +66,7 @@ struct FusedAttention : public torch::autograd::Function<FusedAttention> {
   static tensor_list backward(AutogradContext* context, tensor_list gradients) {
     const auto saved = context->get_saved_variables();
     const at::Tensor &q = saved[0], &k = saved[1], &v = saved[2], &weights = saved[3];
+    RECORD_FUNCTION("remomask::attention_backward", std::vector<c10::IValue>({q, k}));
     const at::Tensor grad_out = with_dense_rows(gradients[0]);
     const int64_t batch = q.size(0), heads = context->saved_data["heads"].toInt();
     const HeadShape shape{q.size(1), k.size(1), q.size(2) / heads};

@@ -1,6 +1,7 @@
 #include "retriever/packed_attention.h"
 
 #include <ATen/Parallel.h>
+#include <ATen/record_function.h>
 #include <torch/csrc/autograd/custom_function.h>
 
 #include <algorithm>
@@ -144,6 +145,7 @@ class PackedAttentionFunction : public torch::autograd::Function<PackedAttention
   static at::Tensor forward(torch::autograd::AutogradContext* context, const at::Tensor& input,
                             const std::vector<int64_t>& offsets, int64_t heads) {
     const at::Tensor x = input.contiguous();
+    RECORD_FUNCTION("remomask::packed_attention", std::vector<c10::IValue>({x, offsets}));
     const PackedShape shape = packed_shape(x, offsets, heads);
     const at::Tensor probabilities = at::empty({shape.probabilities()}, x.options());
     const at::Tensor result = attend(shape, x, probabilities);
@@ -156,6 +158,8 @@ class PackedAttentionFunction : public torch::autograd::Function<PackedAttention
   static torch::autograd::tensor_list backward(torch::autograd::AutogradContext* context,
                                                const torch::autograd::tensor_list& gradients) {
     const auto saved = context->get_saved_variables();
+    RECORD_FUNCTION("remomask::packed_attention_backward",
+                    std::vector<c10::IValue>({saved[0], context->saved_data["offsets"]}));
     const PackedShape shape = packed_shape(saved[0], context->saved_data["offsets"].toIntVector(),
                                            context->saved_data["heads"].toInt());
     return {attention_gradient(shape, saved[0], saved[1], gradients[0].contiguous()), at::Tensor(),
