@@ -157,6 +157,9 @@ struct Generator::Impl {
     return result;
   }
 
+  /// 0 to 1; a model without a gate trusts every hit.
+  double trust(const RetrievedMotion& hit) const { return gate ? gate->trust(hit.similarity) : 1; }
+
   /// The hit that a stretch of `frames` token frames follows, and how far.
   std::optional<FollowedHit> choose_followed(const std::vector<RetrievedMotion>& hits,
                                              int64_t frames, const GenerateOptions& options,
@@ -169,7 +172,7 @@ struct Generator::Impl {
         choose_draft(candidates, static_cast<int>(frames * kFramesPerToken), options.seed);
     if (!chosen) return std::nullopt;
     *hit = &hits[*chosen];
-    const double share = options.follow * (gate ? gate->trust((*hit)->similarity) : 1);
+    const double share = options.follow * trust(**hit);
     if (share <= 0) return std::nullopt;
     return FollowedHit{(*hit)->clip_id, share};
   }
@@ -203,6 +206,16 @@ const Retriever& Generator::retriever() const { return impl_->retriever; }
 const Tokenizer& Generator::tokenizer() const { return impl_->tokenizer; }
 int64_t Generator::max_hits() const { return impl_->masked->config().max_hits; }
 int64_t Generator::sequence_hits() const { return impl_->masked->config().sequence_hits; }
+
+std::vector<RetrievedMotion> Generator::read_hits(const std::vector<RetrievedMotion>& hits,
+                                                  const GenerateOptions& options) const {
+  if (!options.use_retrieval) return {};
+  const auto most = hits.begin() + std::min(static_cast<int64_t>(hits.size()), max_hits());
+  if (options.read_untrusted) return {hits.begin(), most};
+  return {hits.begin(), std::find_if(hits.begin(), most, [&](const RetrievedMotion& hit) {
+            return impl_->trust(hit) <= 0;
+          })};
+}
 
 const Skeleton& Generator::skeleton() const { return impl_->skeleton; }
 
@@ -240,11 +253,7 @@ FillReport Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last,
   const torch::NoGradGuard no_grad;
   Stopwatch watch;
   GenerationTimes spent;
-  std::vector<RetrievedMotion> used;
-  if (options.use_retrieval) {
-    const auto count = std::min(static_cast<int64_t>(hits.size()), max_hits());
-    used.assign(hits.begin(), hits.begin() + count);
-  }
+  const std::vector<RetrievedMotion> used = read_hits(hits, options);
   const std::vector<TokenWindow> windows = plan_windows(canvas.known, first, last);
   const Condition condition = impl_->condition(prompt, used);
   FillReport report;
@@ -299,10 +308,7 @@ Motion Generator::decode(const at::Tensor& tokens, bool held_feet) const {
 Generated Generator::generate(const std::string& prompt, const std::vector<RetrievedMotion>& hits,
                               const GenerateOptions& options) const {
   Generated result;
-  const auto count =
-      options.use_retrieval ? std::min(static_cast<int64_t>(hits.size()), max_hits()) : int64_t{0};
-  const int frames =
-      motion_frames(options.seconds, {hits.begin(), hits.begin() + count}, impl_->skeleton.fps);
+  const int frames = motion_frames(options.seconds, read_hits(hits, options), impl_->skeleton.fps);
   TokenCanvas map = canvas((frames + kFramesPerToken - 1) / kFramesPerToken);
   const FillReport filled = fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times);
   result.hits_used = filled.hits_used;

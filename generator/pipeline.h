@@ -32,8 +32,9 @@ struct GenerateOptions {
   /// piece by piece. Default: the median length of the hits, 5 s without hits, at most 9.8 s.
   std::optional<double> seconds;
   uint64_t seed = 0;
-  bool use_retrieval = true;  ///< false: the hits are not read at all
-  bool held_feet = true;      ///< standing feet do not slide (hold_feet)
+  bool use_retrieval = true;    ///< false: the hits are not read at all
+  bool read_untrusted = false;  ///< read hits too that the model's evidence gate does not trust
+  bool held_feet = true;        ///< standing feet do not slide (hold_feet)
   /// Share of the token frames that keep the codes of one of the hits with poses
   /// (choose_draft, followed_frames), less where the model's evidence gate trusts it less.
   /// 0: the map starts empty; 1: the hit itself, through the tokenizer.
@@ -108,6 +109,11 @@ class Generator {
   const Tokenizer& tokenizer() const;
   const Skeleton& skeleton() const;
   int64_t max_hits() const;
+  /// Those of `hits`, the best first, that are read: at most max_hits(), up to the first that
+  /// the model's evidence gate does not trust at all. A sentence that finds nothing that
+  /// fits is better made from the text alone. None without `options.use_retrieval`.
+  std::vector<RetrievedMotion> read_hits(const std::vector<RetrievedMotion>& hits,
+                                         const GenerateOptions& options) const;
   /// Of how many hits, the best ones, the poses are read.
   int64_t sequence_hits() const;
 

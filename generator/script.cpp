@@ -86,13 +86,9 @@ std::vector<MadeSegment> lay_out(const Generator& generator,
   std::vector<MadeSegment> result;
   int frames = 0;
   for (size_t i = 0; i < segments.size(); ++i) {
-    const auto& hits = segments[i].hits;
-    const auto count = options.use_retrieval
-                           ? std::min(static_cast<int64_t>(hits.size()), generator.max_hits())
-                           : int64_t{0};
     MadeSegment made;
     made.first = frames;
-    frames += motion_frames(segments[i].seconds, {hits.begin(), hits.begin() + count},
+    frames += motion_frames(segments[i].seconds, generator.read_hits(segments[i].hits, options),
                             generator.skeleton().fps);
     made.last = frames;
     made.seed = i == 0 ? options.seed : mix_seed(options.seed, i);

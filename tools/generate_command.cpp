@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "base/error.h"
@@ -28,8 +29,14 @@ void check_prompt_or_script(const std::string& prompt, const std::string& script
 }
 
 void print_evidence(const nlohmann::json& evidence) {
-  if (!evidence.empty()) fmt::print("made from the retrieved motions\n");
+  const auto is_read = [](const auto& hit) { return hit.at("read").template get<bool>(); };
+  const bool any = std::any_of(evidence.begin(), evidence.end(), is_read);
+  if (!evidence.empty()) {
+    fmt::print("{}\n", any ? "made from the retrieved motions"
+                           : "made from the text alone; of the retrieved motions none fits");
+  }
   for (const auto& hit : evidence) {
+    if (any && !is_read(hit)) continue;
     const nlohmann::json& captions = hit.at("captions");
     const std::string influence =
         hit.contains("influence")

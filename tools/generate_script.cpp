@@ -39,7 +39,7 @@ FoundSegments find_segments(const GenerationWorkspace& workspace,
       throw FileError(path, line.line, error.what());
     }
     Evidence evidence = workspace.find_evidence(sentence, filter);
-    found.evidence.push_back(hits_json(evidence.hits));
+    found.evidence.push_back(evidence_json(evidence));
     found.segments.push_back({sentence, std::move(evidence.motions), line.seconds});
   }
   return found;

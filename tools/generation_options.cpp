@@ -46,6 +46,8 @@ void GenerationOptions::add(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--no-retrieval", no_retrieval, "from the text alone");
+  command.add_flag("--read-untrusted", generate.read_untrusted,
+                   "read retrieved motions even where none fits the sentence well");
   command
       .add_option("--follow", generate.follow,
                   "share of the frames that keep the codes of a retrieved motion, less where it "
@@ -53,7 +55,8 @@ void GenerationOptions::add(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   command.add_flag("!--slide", generate.held_feet,
-                   "leave standing feet as the model made them, do not hold them in place");
+                   "leave the feet as the model made them: do not hold standing ones in place, "
+                   "do not raise swinging ones off the floor");
   command
       .add_option("--best-of", best_of,
                   "make so many candidates, keep the one that fits the sentence best and moves "
@@ -71,14 +74,17 @@ GenerationWorkspace::GenerationWorkspace(const std::map<std::string, ModelStage>
   std::string digest = search_.database().uuid();
   for (const auto& [kind, stage] : stages) digest += stage_hash(stage);
   const SamplingOptions& sampling = options.generate.sampling;
+  const char* retrieval = options.no_retrieval              ? "off"
+                          : options.generate.read_untrusted ? "all"
+                                                            : "trusted";
   identity_ = fmt::format(
       "model {} steps {} guidance {:g} temperature {:g} top {:g} corrections {} "
       "residual guidance {:g} residual temperature {:g} retrieval {} follow {:g} best of {} "
       "length {} feet {}",
       content_hash(digest), sampling.steps, sampling.guidance, sampling.temperature,
       sampling.top_share, sampling.correction_rounds, sampling.residual_guidance,
-      sampling.residual_temperature, options.no_retrieval ? "off" : "on", options.generate.follow,
-      options.best_of, options.length, options.generate.held_feet ? "held" : "free");
+      sampling.residual_temperature, retrieval, options.generate.follow, options.best_of,
+      options.length, options.generate.held_feet ? "held and raised" : "free");
 }
 
 GenerateOptions GenerationWorkspace::generate_options(uint64_t seed) const {
@@ -105,6 +111,7 @@ Evidence GenerationWorkspace::find_evidence(const std::string& sentence,
     }
     result.motions.push_back(std::move(motion));
   }
+  result.read = generator_.read_hits(result.motions, options_.generate).size();
   return result;
 }
 
@@ -136,6 +143,17 @@ nlohmann::json followed_json(const std::optional<FollowedHit>& followed,
   throw std::logic_error("a motion followed a clip that was not retrieved");
 }
 
+nlohmann::json evidence_json(const Evidence& evidence) {
+  nlohmann::json list = hits_json(evidence.hits);
+  for (auto& hit : list) {
+    const auto last = evidence.motions.begin() + static_cast<std::ptrdiff_t>(evidence.read);
+    hit["read"] = std::any_of(evidence.motions.begin(), last, [&](const RetrievedMotion& motion) {
+      return hit.at("clip_id") == motion.clip_id;
+    });
+  }
+  return list;
+}
+
 std::vector<uint64_t> candidate_seeds(uint64_t seed, int count) {
   std::vector<uint64_t> seeds = {seed};
   for (int i = 1; i < count; ++i) seeds.push_back(mix_seed(seed, static_cast<uint64_t>(i)));
@@ -145,7 +163,7 @@ std::vector<uint64_t> candidate_seeds(uint64_t seed, int count) {
 nlohmann::json GenerationWorkspace::evidence_json(const std::string& prompt,
                                                   const EvidencedMotion& made,
                                                   bool influence) const {
-  nlohmann::json list = hits_json(made.evidence.hits);
+  nlohmann::json list = remomask::evidence_json(made.evidence);
   if (!influence) return list;
   const std::vector<double> shares =
       hit_influence(generator_, prompt, made.evidence.motions, made.options, made.generated);

@@ -23,7 +23,11 @@ struct GenerationOptions {
 struct Evidence {
   std::vector<MotionHit> hits;
   std::vector<RetrievedMotion> motions;
+  size_t read = 0;  ///< so many of `motions`, the first ones, are read (Generator::read_hits)
 };
+
+/// hits_json(), each with "read": whether the motion is made with it.
+nlohmann::json evidence_json(const Evidence& evidence);
 
 /// A generated motion with the clips it was made from.
 struct EvidencedMotion {

@@ -118,6 +118,7 @@ nlohmann::json hits_json(const std::vector<MotionHit>& hits) {
 std::string evidence_line(const nlohmann::json& hits) {
   std::string line;
   for (const auto& hit : hits) {
+    if (!hit.value("read", true)) continue;
     line += (line.empty() ? "retrieved: " : ", ") + fmt::format("{} ({:.2f})",
                                                                 hit.at("clip").get<std::string>(),
                                                                 hit.at("similarity").get<double>());

@@ -67,7 +67,8 @@ nlohmann::json hit_json(const MotionHit& hit);
 /// Evidence as it is printed and stored in generated files.
 nlohmann::json hits_json(const std::vector<MotionHit>& hits);
 
-/// Such evidence in one line: "retrieved: NAME (0.81), ..."; empty without hits.
+/// The hits of evidence_json() that a motion was made with, in one line: "retrieved: NAME
+/// (0.81), ..."; empty without any. Files of older versions do not say which were: all.
 std::string evidence_line(const nlohmann::json& hits);
 
 }  // namespace remomask

@@ -152,6 +152,30 @@ TEST(Draft, TheGateDecidesHowFarAHitIsFollowed) {
   EXPECT_EQ(share(0.9), 0.8);
 }
 
+TEST(Draft, HitsThatTheGateDoesNotTrustAreNotRead) {
+  auto stages = tiny_model().stages;
+  stages.at("masked").config["evidence_gate"] = {{"none", 0.6}, {"all", 0.8}};
+  const Generator generator(stages);
+  auto hits = posed_hit(generator);
+  hits.push_back(hits[0]);
+  const auto tokens = [&](double first, double second, GenerateOptions options) {
+    hits[0].similarity = first;
+    hits[1].similarity = second;
+    return generator.generate("a person walks", hits, options);
+  };
+  GenerateOptions options = following(0), alone = options, all = options;
+  alone.use_retrieval = false;
+  all.read_untrusted = true;
+  EXPECT_EQ(tokens(0.9, 0.7, options).hits_used, 2);
+  EXPECT_EQ(tokens(0.9, 0.5, options).hits_used, 1);
+  const Generated none = tokens(0.5, 0.5, options);
+  EXPECT_EQ(none.hits_used, 0);
+  EXPECT_TRUE(none.tokens.equal(tokens(0.5, 0.5, alone).tokens)) << "as from the text alone";
+  const Generated everything = tokens(0.5, 0.5, all);
+  EXPECT_EQ(everything.hits_used, 2);
+  EXPECT_FALSE(everything.tokens.equal(none.tokens));
+}
+
 TEST(Draft, ADamagedGateIsAnError) {
   for (const char* gate : {R"({"none": "low", "all": 0.8})", R"({"none": 0.5})", "[]",
                            R"({"none": 0.9, "all": 0.8})", R"({"none": null, "all": 0.8})"}) {
