@@ -144,12 +144,12 @@ std::vector<Motion> generate_answers(const AblationModel& model, const SamplingO
       const auto clip = order[rank].item<int64_t>();
       const TokenClip& found = data.train.clips[static_cast<size_t>(clip)];
       if (!taken.insert(found.group).second) continue;
-      RetrievedMotion hit{clip,
-                          row_of(data.motion, clip),
-                          row_of(data.motion_text, clip),
-                          similarity[clip].item<double>(),
-                          0,
-                          {}};
+      RetrievedMotion hit;
+      hit.clip_id = clip;
+      hit.motion = row_of(data.motion, clip);
+      hit.text = row_of(data.motion_text, clip);
+      hit.similarity = similarity[clip].item<double>();
+      hit.caption_similarity = data.motion_text[clip].dot(query).item<double>();
       if (static_cast<int64_t>(hits.size()) < generator.sequence_hits()) {
         hit.poses = recover_motion(train[found.source].features, humanml_skeleton());
       }

@@ -158,7 +158,9 @@ struct Generator::Impl {
   }
 
   /// 0 to 1; a model without a gate trusts every hit.
-  double trust(const RetrievedMotion& hit) const { return gate ? gate->trust(hit.similarity) : 1; }
+  double trust(const RetrievedMotion& hit) const {
+    return gate ? gate->trust(hit.similarity, hit.caption_similarity) : 1;
+  }
 
   /// The hit that a stretch of `frames` token frames follows, and how far.
   std::optional<FollowedHit> choose_followed(const std::vector<RetrievedMotion>& hits,

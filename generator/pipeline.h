@@ -18,10 +18,11 @@ namespace remomask {
 /// A motion that search found for the prompt.
 struct RetrievedMotion {
   int64_t clip_id = 0;
-  std::vector<float> motion;  ///< R_m, width E, of the same retriever as the model's
-  std::vector<float> text;    ///< R_t
-  double similarity = 0;      ///< cosine of prompt and motion
-  int frames = 0;             ///< its length at the skeleton's rate; 0: unknown
+  std::vector<float> motion;       ///< R_m, width E, of the same retriever as the model's
+  std::vector<float> text;         ///< R_t
+  double similarity = 0;           ///< cosine of prompt and motion
+  double caption_similarity = -1;  ///< cosine of prompt and R_t, which the evidence gate reads too
+  int frames = 0;                  ///< its length at the skeleton's rate; 0: unknown
   /// Its motion, for models that read hits frame by frame (sequence_hits());
   /// without it the hit is its vectors only.
   std::optional<Motion> poses;

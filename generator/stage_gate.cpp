@@ -10,6 +10,10 @@ namespace {
 
 constexpr const char* kKey = "evidence_gate";
 
+bool is_sound(const SimilarityGate& gate) {
+  return std::isfinite(gate.none) && std::isfinite(gate.all) && gate.none <= gate.all;
+}
+
 }  // namespace
 
 void set_stage_gate(ModelStage& masked, const EvidenceGate& gate) { masked.config[kKey] = gate; }
@@ -21,9 +25,9 @@ std::optional<EvidenceGate> stage_gate(const ModelStage& masked) {
   try {
     gate = found->get<EvidenceGate>();
   } catch (const nlohmann::json::exception&) {
-    gate.none = NAN;
+    gate.motion.none = NAN;
   }
-  if (std::isfinite(gate.none) && std::isfinite(gate.all) && gate.none <= gate.all) return gate;
+  if (is_sound(gate.motion) && is_sound(gate.caption)) return gate;
   throw Error("the evidence gate of this model is damaged: " + found->dump() +
               "; make the model file anew with \"remomask train all\"");
 }

@@ -31,57 +31,66 @@ double quantile(std::vector<WeightedSimilarity>& values, double share) {
   return values.back().similarity;
 }
 
-std::vector<const TrainingClip*> clips_with_content(const std::vector<TrainingClip>& clips) {
-  std::vector<const TrainingClip*> result;
-  for (const TrainingClip& clip : clips) {
-    if (!clip.content.empty() && clip.features.frames >= 4) result.push_back(&clip);
+/// Vectors of texts and motions, with one count of what is done.
+class GateEncoder {
+ public:
+  GateEncoder(const Retriever& retriever, const Monitor& monitor, size_t total)
+      : retriever_(retriever), monitor_(monitor), total_(static_cast<double>(total)) {}
+
+  at::Tensor texts(const std::vector<std::string>& texts) {
+    const auto vectors =
+        encode_texts(retriever_, texts, [&](size_t done) { report(done_ + done); }).first;
+    done_ += texts.size();
+    return vectors;
   }
-  return result;
-}
 
-}  // namespace
-
-double EvidenceGate::trust(double similarity) const {
-  if (similarity >= all) return 1;
-  if (similarity <= none) return 0;
-  return (similarity - none) / (all - none);
-}
-
-EvidenceGate fit_gate(std::vector<WeightedSimilarity> right,
-                      std::vector<WeightedSimilarity> wrong) {
-  if (right.empty() || wrong.empty()) {
-    throw Error("an evidence gate needs similarities of right hits and of wrong ones");
-  }
-  const double all = quantile(right, kRightOnesMissed);
-  return {std::min(all, quantile(wrong, kWrongOnesStopped)), all};
-}
-
-std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
-                                         const std::vector<TrainingClip>& train,
-                                         const std::vector<TrainingClip>& val,
-                                         const Monitor& monitor) {
-  const torch::NoGradGuard no_grad;
-  const auto gallery = clips_with_content(train);
-  const CaptionSet captions = caption_set(val, /*all_captions=*/true);
-  if (gallery.empty() || captions.texts.empty()) return std::nullopt;
-  const double total = static_cast<double>(gallery.size() + captions.texts.size());
-  const auto progress = [&](size_t done) {
-    if (monitor.stop_requested()) throw Interrupted("measuring the evidence gate stopped");
-    monitor.report({"measure evidence gate", static_cast<double>(done), total, ""});
-  };
-  std::vector<at::Tensor> vectors;
-  for (size_t first = 0; first < gallery.size(); first += kMotionBlock) {
-    std::vector<const Features*> block;
-    for (size_t c = first; c < std::min(gallery.size(), first + kMotionBlock); ++c) {
-      block.push_back(&gallery[c]->features);
+  at::Tensor motions(const std::vector<const TrainingClip*>& clips) {
+    std::vector<at::Tensor> vectors;
+    for (size_t first = 0; first < clips.size(); first += kMotionBlock) {
+      std::vector<const Features*> block;
+      for (size_t c = first; c < std::min(clips.size(), first + kMotionBlock); ++c) {
+        block.push_back(&clips[c]->features);
+      }
+      vectors.push_back(retriever_.encode_motion(block).global);
+      report(done_ += block.size());
     }
-    vectors.push_back(retriever.encode_motion(block).global);
-    progress(first + block.size());
+    return torch::cat(vectors);
   }
-  const at::Tensor texts = encode_texts(retriever, captions.texts, [&](size_t done) {
-                             progress(gallery.size() + done);
-                           }).first;
-  const at::Tensor similarity = texts.matmul(torch::cat(vectors).transpose(0, 1)).contiguous();
+
+ private:
+  void report(size_t done) const {
+    if (monitor_.stop_requested()) throw Interrupted("measuring the evidence gate stopped");
+    monitor_.report({"measure evidence gate", static_cast<double>(done), total_, ""});
+  }
+
+  const Retriever& retriever_;
+  const Monitor& monitor_;
+  double total_;
+  size_t done_ = 0;
+};
+
+/// Mean of the vectors of every clip's captions, L2-normalised; the captions of one clip
+/// follow each other, as many as `counts` says.
+at::Tensor mean_vectors(const at::Tensor& captions, const std::vector<int64_t>& counts) {
+  std::vector<at::Tensor> result;
+  int64_t first = 0;
+  for (const int64_t count : counts) {
+    const auto mean = captions.slice(0, first, first + count).mean(0);
+    result.push_back(mean / mean.norm().clamp_min(1e-9));
+    first += count;
+  }
+  return torch::stack(result);
+}
+
+bool is_known(const TrainingClip& clip) {
+  return !clip.content.empty() && !clip.captions.empty() && clip.features.frames >= 4;
+}
+
+/// The gate of one similarity, [captions of val, gallery]; nothing where all hits are right,
+/// or none.
+std::optional<SimilarityGate> gate_of(const at::Tensor& similarity, const CaptionSet& captions,
+                                      const std::vector<TrainingClip>& val,
+                                      const std::vector<const TrainingClip*>& gallery) {
   std::map<std::string, double> count;
   for (const size_t clip : captions.clips) ++count[val[clip].content];
   std::vector<WeightedSimilarity> right, wrong;
@@ -103,6 +112,55 @@ std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
   }
   if (right.empty() || wrong.empty()) return std::nullopt;
   return fit_gate(std::move(right), std::move(wrong));
+}
+
+}  // namespace
+
+double SimilarityGate::trust(double similarity) const {
+  if (similarity >= all) return 1;
+  if (similarity <= none) return 0;
+  return (similarity - none) / (all - none);
+}
+
+double EvidenceGate::trust(double motion_similarity, double caption_similarity) const {
+  return std::max(motion.trust(motion_similarity), caption.trust(caption_similarity));
+}
+
+SimilarityGate fit_gate(std::vector<WeightedSimilarity> right,
+                        std::vector<WeightedSimilarity> wrong) {
+  if (right.empty() || wrong.empty()) {
+    throw Error("an evidence gate needs similarities of right hits and of wrong ones");
+  }
+  const double all = quantile(right, kRightOnesMissed);
+  return {std::min(all, quantile(wrong, kWrongOnesStopped)), all};
+}
+
+std::optional<EvidenceGate> measure_gate(const Retriever& retriever,
+                                         const std::vector<TrainingClip>& train,
+                                         const std::vector<TrainingClip>& val,
+                                         const Monitor& monitor) {
+  const torch::NoGradGuard no_grad;
+  std::vector<const TrainingClip*> gallery;
+  std::vector<std::string> gallery_captions;
+  std::vector<int64_t> caption_counts;
+  for (const TrainingClip& clip : train) {
+    if (!is_known(clip)) continue;
+    gallery.push_back(&clip);
+    gallery_captions.insert(gallery_captions.end(), clip.captions.begin(), clip.captions.end());
+    caption_counts.push_back(static_cast<int64_t>(clip.captions.size()));
+  }
+  const CaptionSet captions = caption_set(val, /*all_captions=*/true);
+  if (gallery.empty() || captions.texts.empty()) return std::nullopt;
+  GateEncoder encoder(retriever, monitor,
+                      gallery.size() + gallery_captions.size() + captions.texts.size());
+  const at::Tensor texts = encoder.texts(captions.texts);
+  const auto gate_by = [&](const at::Tensor& vectors) {
+    return gate_of(texts.matmul(vectors.transpose(0, 1)).contiguous(), captions, val, gallery);
+  };
+  const auto motion = gate_by(encoder.motions(gallery));
+  const auto caption = gate_by(mean_vectors(encoder.texts(gallery_captions), caption_counts));
+  if (!motion || !caption) return std::nullopt;
+  return EvidenceGate{*motion, *caption};
 }
 
 }  // namespace remomask

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 
 #include "base/hash.h"
@@ -14,6 +15,10 @@
 namespace remomask {
 
 namespace {
+
+double dot(const std::vector<float>& a, const std::vector<float>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
 
 constexpr double kMostEvaluatedSeconds = 9.8;  // what the transformers see at once
 
@@ -100,11 +105,19 @@ Evidence GenerationWorkspace::find_evidence(const std::string& sentence,
   const auto k = static_cast<int>(generator_.max_hits());
   if (options_.no_retrieval || k == 0) return result;
   result.hits = search_.search(sentence, k, filter);
+  const at::Tensor encoded = search_.retriever().encode_text({sentence}).query.contiguous();
+  const std::vector<float> query(encoded.data_ptr<float>(),
+                                 encoded.data_ptr<float>() + encoded.numel());
   for (const MotionHit& hit : result.hits) {
     const auto vectors = search_.database().embedding(search_.retriever().hash(), hit.clip.id);
     if (!vectors || vectors->text.empty()) continue;
-    RetrievedMotion motion{hit.clip.id,    vectors->motion, vectors->text,
-                           hit.similarity, hit.clip.frames, {}};
+    RetrievedMotion motion;
+    motion.clip_id = hit.clip.id;
+    motion.motion = vectors->motion;
+    motion.text = vectors->text;
+    motion.similarity = hit.similarity;
+    motion.caption_similarity = dot(query, motion.text);
+    motion.frames = hit.clip.frames;
     if (options_.generate.follow > 0 ||
         static_cast<int64_t>(result.motions.size()) < generator_.sequence_hits()) {
       motion.poses = search_.database().motion(hit.clip.id);

@@ -137,9 +137,13 @@ TEST(Draft, KnownFramesAndTheirSeamsStay) {
       << "what is two frames away from the seam follows";
 }
 
+nlohmann::json toy_gate() {
+  return {{"motion", {{"none", 0.6}, {"all", 0.8}}}, {"caption", {{"none", 0.9}, {"all", 0.95}}}};
+}
+
 TEST(Draft, TheGateDecidesHowFarAHitIsFollowed) {
   auto stages = tiny_model().stages;
-  stages.at("masked").config["evidence_gate"] = {{"none", 0.6}, {"all", 0.8}};
+  stages.at("masked").config["evidence_gate"] = toy_gate();
   const Generator generator(stages);
   auto hits = posed_hit(generator);
   const auto share = [&](double similarity) {
@@ -150,11 +154,13 @@ TEST(Draft, TheGateDecidesHowFarAHitIsFollowed) {
   EXPECT_EQ(share(0.5), 0);
   EXPECT_NEAR(share(0.7), 0.4, 1e-9);
   EXPECT_EQ(share(0.9), 0.8);
+  hits[0].caption_similarity = 0.95;
+  EXPECT_EQ(share(0.5), 0.8) << "its captions say what is asked for";
 }
 
 TEST(Draft, HitsThatTheGateDoesNotTrustAreNotRead) {
   auto stages = tiny_model().stages;
-  stages.at("masked").config["evidence_gate"] = {{"none", 0.6}, {"all", 0.8}};
+  stages.at("masked").config["evidence_gate"] = toy_gate();
   const Generator generator(stages);
   auto hits = posed_hit(generator);
   hits.push_back(hits[0]);
@@ -174,14 +180,21 @@ TEST(Draft, HitsThatTheGateDoesNotTrustAreNotRead) {
   const Generated everything = tokens(0.5, 0.5, all);
   EXPECT_EQ(everything.hits_used, 2);
   EXPECT_FALSE(everything.tokens.equal(none.tokens));
+  hits[0].caption_similarity = 0.92;
+  EXPECT_EQ(tokens(0.5, 0.5, options).hits_used, 1);
 }
 
 TEST(Draft, ADamagedGateIsAnError) {
-  for (const char* gate : {R"({"none": "low", "all": 0.8})", R"({"none": 0.5})", "[]",
-                           R"({"none": 0.9, "all": 0.8})", R"({"none": null, "all": 0.8})"}) {
-    auto stages = tiny_model().stages;
-    stages.at("masked").config["evidence_gate"] = nlohmann::json::parse(gate);
-    EXPECT_THROW(Generator{stages}, Error) << gate;
+  const std::string sound = R"({"none": 0.6, "all": 0.8})";
+  for (const std::string part : {R"({"none": "low", "all": 0.8})", R"({"none": 0.5})", "[]",
+                                 R"({"none": 0.9, "all": 0.8})", R"({"none": null, "all": 0.8})"}) {
+    for (const std::string& gate : {R"({"motion": )" + part + R"(, "caption": )" + sound + "}",
+                                    R"({"motion": )" + sound + R"(, "caption": )" + part + "}",
+                                    R"({"motion": )" + sound + "}"}) {
+      auto stages = tiny_model().stages;
+      stages.at("masked").config["evidence_gate"] = nlohmann::json::parse(gate);
+      EXPECT_THROW(Generator{stages}, Error) << gate;
+    }
   }
 }
 

@@ -13,7 +13,7 @@ TEST(EvidenceGate, ItsLimitsAreQuantiles) {
     right.push_back({0.5 + 0.004 * i, 2});    // the 5th of 100: 0.52
     wrong.push_back({0.604 - 0.004 * i, 2});  // the 50th from below: 0.4
   }
-  const EvidenceGate gate = fit_gate(right, wrong);
+  const SimilarityGate gate = fit_gate(right, wrong);
   EXPECT_NEAR(gate.none, 0.4, 1e-9);
   EXPECT_NEAR(gate.all, 0.52, 1e-9);
   EXPECT_NEAR(gate.trust(0.4), 0, 1e-9);
@@ -24,7 +24,7 @@ TEST(EvidenceGate, ItsLimitsAreQuantiles) {
 }
 
 TEST(EvidenceGate, WhereRightAndWrongAreAlikeItIsAThreshold) {
-  const EvidenceGate gate = fit_gate({{0.3, 1}, {0.9, 1}}, {{0.6, 1}, {0.7, 1}});
+  const SimilarityGate gate = fit_gate({{0.3, 1}, {0.9, 1}}, {{0.6, 1}, {0.7, 1}});
   EXPECT_EQ(gate.none, 0.3);
   EXPECT_EQ(gate.all, 0.3);
   EXPECT_EQ(gate.trust(0.29), 0);
@@ -38,6 +38,14 @@ TEST(EvidenceGate, WeightsCount) {
   EXPECT_EQ(fit_gate(right, {{0.05, 1}}).all, 0.7);
   right[0].weight = 76;
   EXPECT_EQ(fit_gate(right, {{0.05, 1}}).all, 0.4);
+}
+
+TEST(EvidenceGate, TheBetterOfTwoSimilaritiesCounts) {
+  const EvidenceGate gate{{0.4, 0.6}, {0.8, 0.9}};
+  EXPECT_EQ(gate.trust(0.3, 0.7), 0);
+  EXPECT_NEAR(gate.trust(0.5, 0.7), 0.5, 1e-9);
+  EXPECT_EQ(gate.trust(0.5, 0.95), 1);
+  EXPECT_EQ(gate.trust(0.7, -1), 1);
 }
 
 TEST(EvidenceGate, NeedsBothKinds) {
