@@ -44,7 +44,7 @@ TokenizerTrainingOptions tokenizer_training_preset(const std::string& size) {
 }
 
 TransformerTrainingOptions transformer_preset(const std::string& size, const char* stage,
-                                              int64_t base_steps) {
+                                              int64_t base_steps, int64_t small_steps) {
   TransformerTrainingOptions options;
   options.trainer.stage_name = stage;
   options.trainer.steps = base_steps;
@@ -58,6 +58,7 @@ TransformerTrainingOptions transformer_preset(const std::string& size, const cha
     options.batch = 16;
     options.validate_every = 30;
   } else if (size == "small") {
+    options.trainer.steps = small_steps;
     options.trainer.learning_rate = 1e-3;
     options.batch = 16;
   } else if (has_published_size(size)) {
@@ -113,8 +114,8 @@ TrainingRecipe training_recipe(const std::string& preset) {
   recipe.text_training = text_training_preset(size);
   recipe.retriever_training = RetrieverTrainingOptions(tower_size(size));
   recipe.tokenizer_training = tokenizer_training_preset(size);
-  recipe.masked_training = transformer_preset(size, "masked", 2800);
-  recipe.residual_training = transformer_preset(size, "residual", 1500);
+  recipe.masked_training = transformer_preset(size, "masked", 5600, 2800);
+  recipe.residual_training = transformer_preset(size, "residual", 1500, 1500);
   return recipe;
 }
 
