@@ -39,7 +39,7 @@ struct GenerateOptions {
   /// Share of the token frames that keep the codes of one of the hits with poses
   /// (choose_draft, followed_frames), less where the model's evidence gate trusts it less.
   /// 0: the map starts empty; 1: the hit itself, through the tokenizer.
-  double follow = 0.5;
+  double follow = 0.75;
   SamplingOptions sampling;
 };
 

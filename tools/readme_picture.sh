@@ -9,8 +9,8 @@ remomask=${REMOMASK:-build/release/tools/remomask}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 number=0
-for prompt in "a person walks forward with energy" "someone raises both hands above the head" \
-  "somebody runs forward" "a man waves with his left hand"; do
+for prompt in "someone walks forward, then stops" "someone raises both hands above the head" \
+  "a person sits on a chair and stands up again" "a person waves the left hand"; do
   number=$((number + 1))
   "$remomask" --quiet generate "$prompt" --seconds 4.4 --seed 3 -o "$folder/$number.bvh" >/dev/null
 done
