@@ -28,8 +28,12 @@ int main(int argc, char** argv) {
     for (const remomask::MotionHit& hit : search.search(query).hits) {
       const auto vectors = database.embedding(generator.retriever().hash(), hit.clip.id);
       if (!vectors || vectors->text.empty()) continue;
-      remomask::RetrievedMotion motion{hit.clip.id,    vectors->motion, vectors->text,
-                                       hit.similarity, hit.clip.frames, {}};
+      remomask::RetrievedMotion motion;
+      motion.clip_id = hit.clip.id;
+      motion.motion = vectors->motion;
+      motion.text = vectors->text;
+      motion.similarity = hit.similarity;
+      motion.frames = hit.clip.frames;
       if (static_cast<int64_t>(retrieved.size()) < generator.sequence_hits()) {
         motion.poses = database.motion(hit.clip.id);
       }
