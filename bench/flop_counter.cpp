@@ -11,7 +11,7 @@ namespace remomask {
 
 namespace {
 
-std::atomic<double> counted{0};
+std::atomic<double> counted{0};  // libtorch calls back a plain function
 
 using Inputs = c10::ArrayRef<const c10::IValue>;
 

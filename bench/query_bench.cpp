@@ -11,10 +11,10 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 #include <string>
 
+#include "bench/file_named.h"
 #include "bench/machine_peak.h"
 #include "index/hit_list.h"
 #include "nn/model_file.h"
@@ -24,11 +24,6 @@ namespace remomask {
 namespace {
 
 constexpr int kQueries = 200;
-
-std::string file_named(const char* variable, const char* shipped) {
-  const char* chosen = std::getenv(variable);
-  return chosen ? chosen : std::string(REMOMASK_SOURCE_DIR) + "/models/" + shipped;
-}
 
 struct Searched {
   Retriever retriever{load_model(file_named("REMOMASK_MODEL", "base.safetensors")).at("retriever")};

@@ -6,14 +6,15 @@
 // one iteration is a whole short training.
 
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 
 #include "base/machine.h"
+#include "bench/file_named.h"
 #include "bench/flop_counter.h"
 #include "bench/machine_peak.h"
 #include "evaluation/evaluator_training.h"
@@ -27,10 +28,8 @@ namespace fs = std::filesystem;
 
 const TrainingSplits& training_clips() {
   static const TrainingSplits splits = [] {
-    const char* chosen = std::getenv("REMOMASK_DATABASE");
-    const Database database(
-        chosen ? chosen : std::string(REMOMASK_SOURCE_DIR) + "/models/procedural.sqlite",
-        OpenMode::read_only);
+    const Database database(file_named("REMOMASK_DATABASE", "procedural.sqlite"),
+                            OpenMode::read_only);
     return TrainingSplits{load_training_set(database, {}), {}, {}};  // no val: steps alone
   }();
   return splits;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "retriever/projection.h"
 #include "retriever/retrieval_metrics.h"
 
 namespace remomask {
@@ -75,11 +76,10 @@ at::Tensor mean_vectors(const at::Tensor& captions, const std::vector<int64_t>& 
   std::vector<at::Tensor> result;
   int64_t first = 0;
   for (const int64_t count : counts) {
-    const auto mean = captions.slice(0, first, first + count).mean(0);
-    result.push_back(mean / mean.norm().clamp_min(1e-9));
+    result.push_back(captions.slice(0, first, first + count).mean(0));
     first += count;
   }
-  return torch::stack(result);
+  return unit_rows(torch::stack(result));
 }
 
 bool is_known(const TrainingClip& clip) {

@@ -8,6 +8,7 @@
 #include "evaluation/candidate_ranking.h"
 #include "motion/motion.h"
 #include "retriever/retriever.h"
+#include "tools/workspace.h"
 
 namespace remomask {
 
@@ -28,9 +29,7 @@ class CandidateList {
   /// Scores the candidates and hands out the best one.
   Made take_best() {
     if (made_.size() == 1) return std::move(made_.front());
-    const at::Tensor query = retriever_.encode_text({prompt_}).query.contiguous();
-    const std::vector<float> vector(query.data_ptr<float>(),
-                                    query.data_ptr<float>() + query.numel());
+    const std::vector<float> vector = text_vector(retriever_, prompt_);
     std::vector<CandidateScore> scores;
     for (size_t i = 0; i < made_.size(); ++i) {
       scores.push_back(

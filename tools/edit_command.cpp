@@ -102,7 +102,7 @@ void register_edit(CLI::App& app, Program& program) {
     const GenerationWorkspace workspace(load_model(model_path), model_path, options->files,
                                         options->generation);
     const Evidence found = workspace.find_evidence(options->prompt, options->filter.filter());
-    const nlohmann::json evidence = evidence_json(found);
+    const nlohmann::json evidence = evidence_list(found);
     nlohmann::json results = nlohmann::json::array();
     std::vector<SheetRow> rows = {{"before", options->input, original}};
     for (int i = 0; i < options->count; ++i) {

@@ -53,9 +53,7 @@ void print_report(const GenerationReport& report) {
   const nlohmann::json& protocol = report.protocol;
   fmt::print(
       "protocol {}: {} prompts of {}, drawn {}, {} generations each, {} draws of batches of {}; "
-      "chance "
-      "{:.1f} "
-      "%\njudge {}, {} gallery clips; evaluator {}\n\n",
+      "chance {:.1f} %\njudge {}, {} gallery clips; evaluator {}\n\n",
       protocol.at("protocol").get<std::string>(), report.subsets.front().prompts,
       protocol.at("prompt_split").get<std::string>(), protocol.at("draw").get<std::string>(),
       protocol.at("repeats").get<int>(), protocol.at("draws").get<int>(),

@@ -39,7 +39,7 @@ FoundSegments find_segments(const GenerationWorkspace& workspace,
       throw FileError(path, line.line, error.what());
     }
     Evidence evidence = workspace.find_evidence(sentence, filter);
-    found.evidence.push_back(evidence_json(evidence));
+    found.evidence.push_back(evidence_list(evidence));
     found.segments.push_back({sentence, std::move(evidence.motions), line.seconds});
   }
   return found;
@@ -49,8 +49,7 @@ FoundSegments find_segments(const GenerationWorkspace& workspace,
 double judge_segment(const GenerationWorkspace& workspace, const std::string& sentence,
                      const Motion& piece, int seam) {
   const Retriever& retriever = workspace.search().retriever();
-  const at::Tensor query = retriever.encode_text({sentence}).query.contiguous();
-  const std::vector<float> vector(query.data_ptr<float>(), query.data_ptr<float>() + query.numel());
+  const std::vector<float> vector = text_vector(retriever, sentence);
   const Skeleton& skeleton = humanml_skeleton();
   // The retriever reads as much as a clip has.
   const int last = std::min(piece.frames, seam + kLongestClip);

@@ -105,9 +105,7 @@ Evidence GenerationWorkspace::find_evidence(const std::string& sentence,
   const auto k = static_cast<int>(generator_.max_hits());
   if (options_.no_retrieval || k == 0) return result;
   result.hits = search_.search(sentence, k, filter);
-  const at::Tensor encoded = search_.retriever().encode_text({sentence}).query.contiguous();
-  const std::vector<float> query(encoded.data_ptr<float>(),
-                                 encoded.data_ptr<float>() + encoded.numel());
+  const std::vector<float> query = text_vector(search_.retriever(), sentence);
   for (const MotionHit& hit : result.hits) {
     const auto vectors = search_.database().embedding(search_.retriever().hash(), hit.clip.id);
     if (!vectors || vectors->text.empty()) continue;
@@ -156,7 +154,7 @@ nlohmann::json followed_json(const std::optional<FollowedHit>& followed,
   throw std::logic_error("a motion followed a clip that was not retrieved");
 }
 
-nlohmann::json evidence_json(const Evidence& evidence) {
+nlohmann::json evidence_list(const Evidence& evidence) {
   nlohmann::json list = hits_json(evidence.hits);
   for (auto& hit : list) {
     const auto last = evidence.motions.begin() + static_cast<std::ptrdiff_t>(evidence.read);
@@ -176,7 +174,7 @@ std::vector<uint64_t> candidate_seeds(uint64_t seed, int count) {
 nlohmann::json GenerationWorkspace::evidence_json(const std::string& prompt,
                                                   const EvidencedMotion& made,
                                                   bool influence) const {
-  nlohmann::json list = remomask::evidence_json(made.evidence);
+  nlohmann::json list = evidence_list(made.evidence);
   if (!influence) return list;
   const std::vector<double> shares =
       hit_influence(generator_, prompt, made.evidence.motions, made.options, made.generated);

@@ -27,7 +27,7 @@ struct Evidence {
 };
 
 /// hits_json(), each with "read": whether the motion is made with it.
-nlohmann::json evidence_json(const Evidence& evidence);
+nlohmann::json evidence_list(const Evidence& evidence);
 
 /// A generated motion with the clips it was made from.
 struct EvidencedMotion {

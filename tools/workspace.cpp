@@ -87,14 +87,17 @@ SearchWorkspace::SearchWorkspace(const std::map<std::string, ModelStage>& stages
 
 std::vector<MotionHit> SearchWorkspace::search(const std::string& text, int k,
                                                const ClipFilter& filter) const {
-  const at::Tensor vector = retriever_.encode_text({text}).query.contiguous();
-  const float* numbers = vector.data_ptr<float>();
   SearchScene scene;
   scene.state = state_;
   if (!filter.empty()) scene.allowed = matching_clips(database_, state_->clips, filter);
   SearchQuery query;
   query.k = k;
-  return collect_hits(scene, query, {{numbers, numbers + vector.numel()}, {}}).hits;
+  return collect_hits(scene, query, {text_vector(retriever_, text), {}}).hits;
+}
+
+std::vector<float> text_vector(const Retriever& retriever, const std::string& text) {
+  const at::Tensor query = retriever.encode_text({text}).query.contiguous();
+  return {query.data_ptr<float>(), query.data_ptr<float>() + query.numel()};
 }
 
 nlohmann::json hit_json(const MotionHit& hit) {

@@ -64,10 +64,13 @@ const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
 /// One hit as it is printed.
 nlohmann::json hit_json(const MotionHit& hit);
 
+/// The vector of a text in the shared space [E], L2-normalised.
+std::vector<float> text_vector(const Retriever& retriever, const std::string& text);
+
 /// Evidence as it is printed and stored in generated files.
 nlohmann::json hits_json(const std::vector<MotionHit>& hits);
 
-/// The hits of evidence_json() that a motion was made with, in one line: "retrieved: NAME
+/// The hits of evidence_list() that a motion was made with, in one line: "retrieved: NAME
 /// (0.81), ..."; empty without any. Files of older versions do not say which were: all.
 std::string evidence_line(const nlohmann::json& hits);
 
