@@ -8,7 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
 namespace remomask {
 

@@ -14,18 +14,18 @@ namespace {
 
 constexpr int kFrames = 20000;
 
-void extract(benchmark::State& state, FeatureMode mode) {
+void extract(benchmark::State& state, motion::FeatureMode mode) {
   omp_set_num_threads(1);
   static const Motion walk = long_walk(kFrames);
   const Skeleton& skeleton = humanml_skeleton();
-  for (auto _ : state) benchmark::DoNotOptimize(extract_features(walk, skeleton, mode));
+  for (auto _ : state) benchmark::DoNotOptimize(motion::extract_features(walk, skeleton, mode));
   const double bytes = 4.0 * kFrames * (skeleton.joints() * 3 + skeleton.feature_dim());
   state.SetItemsProcessed(state.iterations() * kFrames);
   report_floor(state, bytes / memory_read_rate());
 }
 
-BENCHMARK_CAPTURE(extract, official, FeatureMode::official)->Apply(with_medians);
-BENCHMARK_CAPTURE(extract, fixed, FeatureMode::fixed)->Apply(with_medians);
+BENCHMARK_CAPTURE(extract, official, motion::FeatureMode::official)->Apply(with_medians);
+BENCHMARK_CAPTURE(extract, fixed, motion::FeatureMode::fixed)->Apply(with_medians);
 
 }  // namespace
 }  // namespace remomask

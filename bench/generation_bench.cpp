@@ -10,14 +10,14 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "base/error.h"
 #include "base/random.h"
 #include "bench/machine_peak.h"
 #include "bench/model_work.h"
 #include "bench/random_model.h"
-#include "generator/pipeline.h"
 #include "nn/model_file.h"
 #include "nn/threads.h"
+#include "pipeline/motion_generator.h"
+#include "remomask/error.h"
 
 namespace remomask {
 namespace {
@@ -28,7 +28,7 @@ constexpr double kSeconds = 9.8;
 
 struct BenchModel {
   std::string label;
-  std::map<std::string, ModelStage> stages;
+  std::map<std::string, nn::ModelStage> stages;
 
   BenchModel() {
     const char* named = std::getenv("REMOMASK_MODEL");
@@ -36,15 +36,15 @@ struct BenchModel {
         named != nullptr ? named : REMOMASK_SOURCE_DIR "/models/base.safetensors";
     if (named != nullptr || std::filesystem::exists(path)) {
       label = std::filesystem::path(path).filename().string();
-      stages = load_model(path);
+      stages = nn::load_model(path);
     } else {
       label = "random weights";
-      stages = random_stages(model_preset("base"));
+      stages = random_stages(training::model_preset("base"));
     }
   }
 };
 
-std::vector<RetrievedMotion> random_hits(const Generator& generator) {
+std::vector<pipeline::RetrievedMotion> random_hits(const pipeline::Generator& generator) {
   CounterRandom random(1);
   const auto width = static_cast<size_t>(generator.retriever().embedding_width());
   const auto unit_vector = [&] {
@@ -57,8 +57,8 @@ std::vector<RetrievedMotion> random_hits(const Generator& generator) {
     for (float& value : vector) value /= static_cast<float>(std::sqrt(square));
     return vector;
   };
-  std::vector<RetrievedMotion> hits(static_cast<size_t>(generator.max_hits()));
-  for (RetrievedMotion& hit : hits) {
+  std::vector<pipeline::RetrievedMotion> hits(static_cast<size_t>(generator.max_hits()));
+  for (pipeline::RetrievedMotion& hit : hits) {
     hit.motion = unit_vector();
     hit.text = unit_vector();
     hit.similarity = 0.5;
@@ -71,34 +71,35 @@ struct GenerationWork {
   double base = 0, residual = 0, decode = 0;
 };
 
-GenerationWork generation_work(const BenchModel& model, const Generator& generator,
-                               const SamplingOptions& options) {
-  const auto masked = masked_config(model.stages.at("masked").config);
-  const TokenizerConfig& tokenizer = generator.tokenizer().config();
+GenerationWork generation_work(const BenchModel& model, const pipeline::Generator& generator,
+                               const generator::SamplingOptions& options) {
+  const auto masked = generator::masked_config(model.stages.at("masked").config);
+  const tokenizer::TokenizerConfig& tokenizer = generator.tokenizer().config();
   const ConditionSize condition{generator.retriever().encode_text({kPrompt}).states.size(1),
                                 generator.max_hits()};
   GenerationWork work;
-  work.base = sample_base_flops(masked, options, condition, kLongestTokenMap);
+  work.base = sample_base_flops(masked, options, condition, generator::kLongestTokenMap);
   if (tokenizer.levels > 1) {
-    work.residual = sample_residual_flops(residual_config(model.stages.at("residual").config),
-                                          options, condition, kLongestTokenMap);
+    work.residual =
+        sample_residual_flops(generator::residual_config(model.stages.at("residual").config),
+                              options, condition, generator::kLongestTokenMap);
   }
-  work.decode = decode_flops(tokenizer, kLongestTokenMap);
+  work.decode = decode_flops(tokenizer, generator::kLongestTokenMap);
   return work;
 }
 
 void time_generation(benchmark::State& state) {
   static const BenchModel model;
-  static const Generator generator(model.stages);
-  set_compute_threads(static_cast<int>(state.range(0)));
+  static const pipeline::Generator generator(model.stages);
+  nn::set_compute_threads(static_cast<int>(state.range(0)));
   state.SetLabel(model.label);
   const auto hits = random_hits(generator);
-  GenerateOptions options;
+  pipeline::GenerateOptions options;
   options.seconds = kSeconds;
   const GenerationWork work = generation_work(model, generator, options.sampling);
-  GenerationTimes sum;
+  pipeline::GenerationTimes sum;
   for (auto _ : state) {
-    const Generated made = generator.generate(kPrompt, hits, options);
+    const pipeline::Generated made = generator.generate(kPrompt, hits, options);
     sum.text += made.times.text;
     sum.base += made.times.base;
     sum.residual += made.times.residual;

@@ -21,12 +21,12 @@ namespace {
 constexpr int kBefore = 67000, kNew = 1000, kWidth = 512;
 constexpr const char* kRetriever = "0123456789abcdef0123456789abcdef";
 
-void add_clips(Database& database, int first, int count) {
+void add_clips(db::Database& database, int first, int count) {
   const auto vectors = random_unit_vectors(count, kWidth, static_cast<uint64_t>(first));
-  std::vector<ClipEmbedding> embeddings;
+  std::vector<db::ClipEmbedding> embeddings;
   database.begin();
   for (int i = 0; i < count; ++i) {
-    Clip clip;
+    db::Clip clip;
     clip.name = "clip" + std::to_string(first + i);
     clip.source = "bench";
     clip.source_file = clip.name;
@@ -47,11 +47,11 @@ void add_clips(Database& database, int first, int count) {
 /// Changes that a database can go through beside its index.
 struct Change {
   const char* name;
-  IndexDifference expected;
-  void (*apply)(Database& database);
+  index::IndexDifference expected;
+  void (*apply)(db::Database& database);
 };
 
-std::vector<int64_t> every_67th(const Database& database) {
+std::vector<int64_t> every_67th(const db::Database& database) {
   const auto ids = database.embedded_clips(kRetriever);
   std::vector<int64_t> some;
   for (size_t i = 0; i < ids.size(); i += kBefore / kNew) some.push_back(ids[i]);
@@ -59,15 +59,15 @@ std::vector<int64_t> every_67th(const Database& database) {
 }
 
 const Change kAdded{
-    "added", {kNew, 0}, [](Database& database) { add_clips(database, kBefore, kNew); }};
+    "added", {kNew, 0}, [](db::Database& database) { add_clips(database, kBefore, kNew); }};
 const Change kRemoved{
-    "removed", {0, kNew}, [](Database& database) { database.remove(every_67th(database)); }};
-const Change kDescribed{"described", {0, 0}, [](Database& database) {
+    "removed", {0, kNew}, [](db::Database& database) { database.remove(every_67th(database)); }};
+const Change kDescribed{"described", {0, 0}, [](db::Database& database) {
                           const auto ids = every_67th(database);
                           const auto vectors = database.embeddings(kRetriever, ids);
                           database.begin();
                           for (const int64_t id : ids) {
-                            ClipChanges captions;
+                            db::ClipChanges captions;
                             captions.captions = {"a person does number " + std::to_string(-id)};
                             database.update_clip(id, captions);
                           }
@@ -80,23 +80,23 @@ struct States {
   std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("index_bench_" + std::to_string(getpid()));
   std::string index_path = (folder / "motions.index").string();
-  std::optional<Database> before;
-  std::map<std::string, Database> after;  ///< Change::name ->
+  std::optional<db::Database> before;
+  std::map<std::string, db::Database> after;  ///< Change::name ->
 
   States() {
     std::filesystem::create_directories(folder);
     const std::string early = (folder / "before.sqlite").string();
     {
-      Database database(early, OpenMode::create);
+      db::Database database(early, db::OpenMode::create);
       add_clips(database, 0, kBefore);
     }
-    before.emplace(early, OpenMode::read_only);
+    before.emplace(early, db::OpenMode::read_only);
     for (const Change* change : {&kAdded, &kRemoved, &kDescribed}) {
       const std::string late = (folder / change->name).string();
       std::filesystem::copy_file(early, late);
-      change->apply(after.try_emplace(change->name, late, OpenMode::read_write).first->second);
+      change->apply(after.try_emplace(change->name, late, db::OpenMode::read_write).first->second);
     }
-    update_index(index_path, *before, kRetriever);
+    index::update_index(index_path, *before, kRetriever);
   }
   ~States() {
     before.reset();
@@ -110,48 +110,48 @@ States& states() {
   return all;
 }
 
-bool is_expected(const IndexDifference& difference, const Change& change) {
+bool is_expected(const index::IndexDifference& difference, const Change& change) {
   return difference.added == change.expected.added && difference.dropped == change.expected.dropped;
 }
 
 void index_rebuild(benchmark::State& state) {
   const std::string path = (states().folder / "rebuilt.index").string();
-  UpdateOptions options;
+  index::UpdateOptions options;
   options.rebuild = true;
-  for (auto _ : state) update_index(path, states().after.at("added"), kRetriever, options);
+  for (auto _ : state) index::update_index(path, states().after.at("added"), kRetriever, options);
 }
 
 /// What `remomask index` does after embedding: from the files to the files.
 void index_update_files(benchmark::State& state, const Change& change) {
-  const Database& after = states().after.at(change.name);
+  const db::Database& after = states().after.at(change.name);
   for (auto _ : state) {
     state.PauseTiming();
-    std::filesystem::remove(delta_path(states().index_path));
+    std::filesystem::remove(index::delta_path(states().index_path));
     state.ResumeTiming();
-    const IndexUpdate made = update_index(states().index_path, after, kRetriever);
+    const index::IndexUpdate made = index::update_index(states().index_path, after, kRetriever);
     if (!is_expected(made.difference, change)) state.SkipWithError("other clips have changed");
   }
 }
 
 /// An open index takes the new state over.
 void index_follow(benchmark::State& state, const Change& change) {
-  const Database& after = states().after.at(change.name);
-  std::filesystem::remove(delta_path(states().index_path));
+  const db::Database& after = states().after.at(change.name);
+  std::filesystem::remove(index::delta_path(states().index_path));
   for (auto _ : state) {
     state.PauseTiming();
-    auto index = VectorIndex::open(states().index_path, *states().before, kRetriever);
+    auto index = index::VectorIndex::open(states().index_path, *states().before, kRetriever);
     state.ResumeTiming();
-    const IndexDifference difference = index.follow(after);
+    const index::IndexDifference difference = index.follow(after);
     if (!is_expected(difference, change)) state.SkipWithError("other clips have changed");
   }
 }
 
 /// What a search pays at its start: reading the base, checking it, following.
 void index_open(benchmark::State& state) {
-  const Database& after = states().after.at("added");
-  update_index(states().index_path, after, kRetriever);
+  const db::Database& after = states().after.at("added");
+  index::update_index(states().index_path, after, kRetriever);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(VectorIndex::open(states().index_path, after, kRetriever));
+    benchmark::DoNotOptimize(index::VectorIndex::open(states().index_path, after, kRetriever));
   }
 }
 

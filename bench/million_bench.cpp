@@ -21,7 +21,7 @@ constexpr int64_t kCount = 1000000, kQueries = 200, kNearest = 10;
 constexpr int kWidth = 512;
 
 struct Million {
-  VectorIndex index;
+  index::VectorIndex index;
   double build_seconds;
 };
 
@@ -30,7 +30,7 @@ Million make_million() {
   std::iota(ids.begin(), ids.end(), 1);
   const auto vectors = clustered_unit_vectors(kCount, kWidth, 1);
   const auto start = std::chrono::steady_clock::now();
-  VectorIndex index({"bench", 0, "bench"}, ids, vectors, kWidth);
+  index::VectorIndex index({"bench", 0, "bench"}, ids, vectors, kWidth);
   return {std::move(index),
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
 }
@@ -53,8 +53,8 @@ double measured_recall() {
   int64_t right = 0;
   for (size_t query = 0; query < found.size(); ++query) {
     std::set<int64_t> nearest;
-    for (const VectorHit& hit : truth[query]) nearest.insert(hit.clip_id);
-    for (const VectorHit& hit : found[query]) right += nearest.contains(hit.clip_id) ? 1 : 0;
+    for (const index::VectorHit& hit : truth[query]) nearest.insert(hit.clip_id);
+    for (const index::VectorHit& hit : found[query]) right += nearest.contains(hit.clip_id) ? 1 : 0;
   }
   return static_cast<double>(right) / (kQueries * kNearest);
 }

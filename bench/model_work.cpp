@@ -1,32 +1,32 @@
 #include "bench/model_work.h"
 
-#include "base/error.h"
-#include "generator/part_map.h"
-#include "generator/tokenizer_network.h"
+#include "remomask/error.h"
+#include "tokenizer/part_map.h"
+#include "tokenizer/tokenizer_network.h"
 
 namespace remomask {
 
 namespace {
 
-int64_t hit_rows(const SstaConfig& config, const ConditionSize& condition) {
+int64_t hit_rows(const generator::SstaConfig& config, const ConditionSize& condition) {
   return config.retrieval ? condition.hits + 1 : 0;
 }
 
 int64_t guided_samples(double guidance) { return guidance == 1 ? 1 : 2; }
 
-int64_t row_channels(const TokenizerConfig& config) {
-  return config.rows == 1 ? tokenizer_skeleton(config.skeleton).feature_dim()
-                          : kPartSlots * kSlotChannels;
+int64_t row_channels(const tokenizer::TokenizerConfig& config) {
+  return config.rows == 1 ? skeleton_named(config.skeleton).feature_dim()
+                          : motion::kPartSlots * tokenizer::kSlotChannels;
 }
 
 /// Multiply-adds for one token frame in what encoder and decoder have alike:
 /// patches, residual blocks, exchange between rows, and codes in or out.
-double common_products(const TokenizerConfig& config) {
+double common_products(const tokenizer::TokenizerConfig& config) {
   if (config.widths.size() != 1) {
     throw Error("the work of a tokenizer is only known for one time scale");
   }
   const int64_t width = config.widths[0], rows = config.rows;
-  const int64_t each_row = kFramesPerToken * row_channels(config) * width +
+  const int64_t each_row = tokenizer::kFramesPerToken * row_channels(config) * width +
                            config.blocks[0] * 4 * width * width + 3 * width * config.code_width;
   const int64_t mixer = rows > 1 ? 2 * rows * width * config.mixer_width : 0;
   return static_cast<double>(rows * each_row + mixer);
@@ -34,7 +34,8 @@ double common_products(const TokenizerConfig& config) {
 
 }  // namespace
 
-double prepare_flops(const SstaConfig& config, int64_t layers, const ConditionSize& condition) {
+double prepare_flops(const generator::SstaConfig& config, int64_t layers,
+                     const ConditionSize& condition) {
   const int64_t width = config.width, text_rows = condition.text_tokens + 1;
   const int64_t encoder =
       condition.text_tokens * config.text_width * width + config.embedding_width * width;
@@ -43,8 +44,8 @@ double prepare_flops(const SstaConfig& config, int64_t layers, const ConditionSi
   return 2.0 * static_cast<double>(encoder + layers * layer);
 }
 
-double stack_flops(const SstaConfig& config, int64_t layers, const ConditionSize& condition,
-                   int64_t frames) {
+double stack_flops(const generator::SstaConfig& config, int64_t layers,
+                   const ConditionSize& condition, int64_t frames) {
   const int64_t tokens = frames * config.rows, width = config.width;
   const int64_t keys = tokens + condition.text_tokens + 1 + hit_rows(config, condition);
   const int64_t projections = tokens * 4 * width * width;
@@ -53,31 +54,33 @@ double stack_flops(const SstaConfig& config, int64_t layers, const ConditionSize
   return 2.0 * static_cast<double>(layers * (projections + attention + feed_forward));
 }
 
-SstaConfig stack_config(const MaskedConfig& config) {
+generator::SstaConfig stack_config(const generator::MaskedConfig& config) {
   return {config.rows,    config.width,      config.heads,           config.hidden,
           config.dropout, config.text_width, config.embedding_width, config.max_hits > 0};
 }
 
-SstaConfig stack_config(const ResidualConfig& config) {
+generator::SstaConfig stack_config(const generator::ResidualConfig& config) {
   return {config.rows,    config.width,      config.heads,           config.hidden,
           config.dropout, config.text_width, config.embedding_width, /*retrieval=*/false};
 }
 
-double sample_base_flops(const MaskedConfig& config, const SamplingOptions& options,
-                         const ConditionSize& condition, int64_t frames) {
-  const SstaConfig stack = stack_config(config);
+double sample_base_flops(const generator::MaskedConfig& config,
+                         const generator::SamplingOptions& options, const ConditionSize& condition,
+                         int64_t frames) {
+  const generator::SstaConfig stack = stack_config(config);
   const int64_t tokens = frames * config.rows;
-  const auto passes =
-      static_cast<double>(masked_counts(tokens, options.steps).size()) + options.correction_rounds;
+  const auto passes = static_cast<double>(generator::masked_counts(tokens, options.steps).size()) +
+                      options.correction_rounds;
   const double head = 2.0 * static_cast<double>(tokens * config.width * config.codes);
   const double sample = prepare_flops(stack, config.layers, condition) +
                         passes * (stack_flops(stack, config.layers, condition, frames) + head);
   return static_cast<double>(guided_samples(options.guidance)) * sample;
 }
 
-double sample_residual_flops(const ResidualConfig& config, const SamplingOptions& options,
+double sample_residual_flops(const generator::ResidualConfig& config,
+                             const generator::SamplingOptions& options,
                              const ConditionSize& condition, int64_t frames) {
-  const SstaConfig stack = stack_config(config);
+  const generator::SstaConfig stack = stack_config(config);
   const auto passes = static_cast<double>(config.levels - 1);
   const double head = 2.0 * static_cast<double>(frames * config.rows * config.width * config.codes);
   const double sample = prepare_flops(stack, config.layers, condition) +
@@ -85,15 +88,15 @@ double sample_residual_flops(const ResidualConfig& config, const SamplingOptions
   return static_cast<double>(guided_samples(options.residual_guidance)) * sample;
 }
 
-double encode_flops(const TokenizerConfig& config, int64_t frames) {
+double encode_flops(const tokenizer::TokenizerConfig& config, int64_t frames) {
   const int64_t quantiser = config.rows * config.levels * config.codes * config.code_width;
   return 2.0 * static_cast<double>(frames) *
          (common_products(config) + static_cast<double>(quantiser));
 }
 
-double decode_flops(const TokenizerConfig& config, int64_t frames) {
+double decode_flops(const tokenizer::TokenizerConfig& config, int64_t frames) {
   const int64_t smooth =
-      kFramesPerToken * config.rows * 2 * 3 * row_channels(config) * config.smooth_width;
+      tokenizer::kFramesPerToken * config.rows * 2 * 3 * row_channels(config) * config.smooth_width;
   return 2.0 * static_cast<double>(frames) *
          (common_products(config) + static_cast<double>(smooth));
 }

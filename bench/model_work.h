@@ -2,7 +2,7 @@
 
 #include "generator/sampling.h"
 #include "generator/ssta.h"
-#include "generator/tokenizer.h"
+#include "tokenizer/tokenizer.h"
 
 namespace remomask {
 
@@ -16,24 +16,27 @@ struct ConditionSize {
 };
 
 /// SstaStack::prepare() for one sample.
-double prepare_flops(const SstaConfig& config, int64_t layers, const ConditionSize& condition);
+double prepare_flops(const generator::SstaConfig& config, int64_t layers,
+                     const ConditionSize& condition);
 /// SstaStack::forward() for one sample of `frames` token frames.
-double stack_flops(const SstaConfig& config, int64_t layers, const ConditionSize& condition,
-                   int64_t frames);
+double stack_flops(const generator::SstaConfig& config, int64_t layers,
+                   const ConditionSize& condition, int64_t frames);
 
 /// The stacks inside the two transformers.
-SstaConfig stack_config(const MaskedConfig& config);
-SstaConfig stack_config(const ResidualConfig& config);
+generator::SstaConfig stack_config(const generator::MaskedConfig& config);
+generator::SstaConfig stack_config(const generator::ResidualConfig& config);
 
 /// sample_base() and sample_residual() of `frames` token frames.
-double sample_base_flops(const MaskedConfig& config, const SamplingOptions& options,
-                         const ConditionSize& condition, int64_t frames);
-double sample_residual_flops(const ResidualConfig& config, const SamplingOptions& options,
+double sample_base_flops(const generator::MaskedConfig& config,
+                         const generator::SamplingOptions& options, const ConditionSize& condition,
+                         int64_t frames);
+double sample_residual_flops(const generator::ResidualConfig& config,
+                             const generator::SamplingOptions& options,
                              const ConditionSize& condition, int64_t frames);
 
 /// Tokenizer::encode() and decode() of 4 `frames` poses. Throws Error for a
 /// tokenizer of several time scales.
-double encode_flops(const TokenizerConfig& config, int64_t frames);
-double decode_flops(const TokenizerConfig& config, int64_t frames);
+double encode_flops(const tokenizer::TokenizerConfig& config, int64_t frames);
+double decode_flops(const tokenizer::TokenizerConfig& config, int64_t frames);
 
 }  // namespace remomask

@@ -16,9 +16,9 @@
 
 #include "bench/file_named.h"
 #include "bench/machine_peak.h"
-#include "index/hit_list.h"
 #include "nn/model_file.h"
 #include "retriever/retriever.h"
+#include "search/hit_list.h"
 
 namespace remomask {
 namespace {
@@ -26,17 +26,20 @@ namespace {
 constexpr int kQueries = 200;
 
 struct Searched {
-  Retriever retriever{load_model(file_named("REMOMASK_MODEL", "base.safetensors")).at("retriever")};
-  Database database{file_named("REMOMASK_DATABASE", "procedural.sqlite"), OpenMode::read_only};
-  std::shared_ptr<const SearchState> state = std::make_shared<SearchState>(
-      VectorIndex::open(default_index_path(database.path()), database, retriever.hash()),
+  retriever::Retriever retriever{
+      nn::load_model(file_named("REMOMASK_MODEL", "base.safetensors")).at("retriever")};
+  db::Database database{file_named("REMOMASK_DATABASE", "procedural.sqlite"),
+                        db::OpenMode::read_only};
+  std::shared_ptr<const search::SearchState> state = std::make_shared<search::SearchState>(
+      index::VectorIndex::open(index::default_index_path(database.path()), database,
+                               retriever.hash()),
       database.clips());
   std::vector<std::string> queries;
 
   Searched() {
-    const std::vector<Clip>& clips = state->clips;
+    const std::vector<db::Clip>& clips = state->clips;
     for (int i = 0; i < kQueries; ++i) {
-      const Clip& clip = clips[clips.size() * static_cast<size_t>(i) / kQueries];
+      const db::Clip& clip = clips[clips.size() * static_cast<size_t>(i) / kQueries];
       queries.push_back(clip.captions.empty() ? clip.name : clip.captions.front());
     }
     for (const std::string& query : queries) search(query);  // warm
@@ -44,9 +47,9 @@ struct Searched {
   size_t search(const std::string& text) const {
     const at::Tensor query = retriever.encode_text({text}).query.contiguous();
     const float* numbers = query.data_ptr<float>();
-    SearchScene scene;
+    search::SearchScene scene;
     scene.state = state;
-    return collect_hits(scene, {}, {{numbers, numbers + query.numel()}, {}}).hits.size();
+    return search::collect_hits(scene, {}, {{numbers, numbers + query.numel()}, {}}).hits.size();
   }
 };
 

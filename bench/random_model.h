@@ -3,16 +3,16 @@
 #include <map>
 #include <string>
 
-#include "generator/presets.h"
 #include "nn/model_file.h"
+#include "training/presets.h"
 
 namespace remomask {
 
 /// A tokenizer with random weights and codes.
-ModelStage random_tokenizer_stage(const TokenizerConfig& config);
+nn::ModelStage random_tokenizer_stage(const tokenizer::TokenizerConfig& config);
 
 /// All stages of a whole model with random weights: as fast as a trained one,
 /// its motions mean nothing.
-std::map<std::string, ModelStage> random_stages(const ModelConfig& config);
+std::map<std::string, nn::ModelStage> random_stages(const training::ModelConfig& config);
 
 }  // namespace remomask

@@ -38,10 +38,10 @@ void count_work(benchmark::State& state, int64_t queries) {
 }
 
 void search_remomask(benchmark::State& state) {
-  static const VectorIndex index = [] {
+  static const index::VectorIndex index = [] {
     std::vector<int64_t> ids(kCount);
     std::iota(ids.begin(), ids.end(), 1);
-    return VectorIndex({"bench", 0, "bench"}, ids, stored_vectors(), kWidth);
+    return index::VectorIndex({"bench", 0, "bench"}, ids, stored_vectors(), kWidth);
   }();
   const int64_t queries = state.range(0);
   for (auto _ : state) {

@@ -9,15 +9,15 @@
 #include "base/machine.h"
 #include "bench/machine_peak.h"
 #include "bench/model_work.h"
-#include "generator/presets.h"
 #include "nn/threads.h"
+#include "training/presets.h"
 
 namespace remomask {
 namespace {
 
 constexpr ConditionSize kCondition{16, 4};
 
-Condition random_unit_condition(const SstaConfig& config, int64_t batch) {
+generator::Condition random_unit_condition(const generator::SstaConfig& config, int64_t batch) {
   const auto unit = [&](std::vector<int64_t> shape) {
     const auto x = torch::randn(shape);
     return x / x.norm(2, -1, /*keepdim=*/true);
@@ -38,15 +38,15 @@ Condition random_unit_condition(const SstaConfig& config, int64_t batch) {
 
 void run_stack(benchmark::State& state, bool with_gradients) {
   const int64_t batch = state.range(0);
-  set_compute_threads(static_cast<int>(state.range(1)));
+  nn::set_compute_threads(static_cast<int>(state.range(1)));
   torch::manual_seed(1);
-  const MaskedConfig model = model_preset("base").masked;
-  const SstaConfig config = stack_config(model);
-  SstaStack stack(config, model.layers);
+  const generator::MaskedConfig model = training::model_preset("base").masked;
+  const generator::SstaConfig config = stack_config(model);
+  generator::SstaStack stack(config, model.layers);
   stack->initialise();
   stack->train(with_gradients);
-  const Condition condition = random_unit_condition(config, batch);
-  auto x = torch::randn({batch, kLongestTokenMap * config.rows, config.width});
+  const generator::Condition condition = random_unit_condition(config, batch);
+  auto x = torch::randn({batch, generator::kLongestTokenMap * config.rows, config.width});
   x.requires_grad_(with_gradients);
   const torch::AutoGradMode gradients(with_gradients);
   for (auto _ : state) {
@@ -57,9 +57,10 @@ void run_stack(benchmark::State& state, bool with_gradients) {
     }
     benchmark::DoNotOptimize(y.data_ptr<float>());
   }
-  const double forward = static_cast<double>(batch) *
-                         (prepare_flops(config, model.layers, kCondition) +
-                          stack_flops(config, model.layers, kCondition, kLongestTokenMap));
+  const double forward =
+      static_cast<double>(batch) *
+      (prepare_flops(config, model.layers, kCondition) +
+       stack_flops(config, model.layers, kCondition, generator::kLongestTokenMap));
   state.SetItemsProcessed(state.iterations() * batch);
   report_arithmetic(state, with_gradients ? 3 * forward : forward);
 }

@@ -10,41 +10,41 @@
 #include "bench/model_work.h"
 #include "bench/random_model.h"
 #include "generator/ssta.h"
-#include "generator/tokenizer_network.h"
 #include "nn/threads.h"
+#include "tokenizer/tokenizer_network.h"
 
 namespace remomask {
 namespace {
 
-constexpr int kFrames = static_cast<int>(kLongestTokenMap * kFramesPerToken);
+constexpr int kFrames = static_cast<int>(generator::kLongestTokenMap * tokenizer::kFramesPerToken);
 
-const Tokenizer& base_tokenizer() {
-  static const Tokenizer tokenizer = [] {
+const tokenizer::Tokenizer& base_tokenizer() {
+  static const tokenizer::Tokenizer tokenizer = [] {
     torch::manual_seed(1);
-    return Tokenizer(random_tokenizer_stage(model_preset("base").tokenizer));
+    return tokenizer::Tokenizer(random_tokenizer_stage(training::model_preset("base").tokenizer));
   }();
   return tokenizer;
 }
 
 void encode(benchmark::State& state) {
-  set_compute_threads(static_cast<int>(state.range(0)));
-  const Tokenizer& tokenizer = base_tokenizer();
-  const Features features =
-      extract_features_all_frames(long_walk(kFrames), humanml_skeleton(), FeatureMode::fixed);
+  nn::set_compute_threads(static_cast<int>(state.range(0)));
+  const tokenizer::Tokenizer& tokenizer = base_tokenizer();
+  const motion::Features features = motion::extract_features_all_frames(
+      long_walk(kFrames), humanml_skeleton(), motion::FeatureMode::fixed);
   for (auto _ : state) benchmark::DoNotOptimize(tokenizer.encode(features));
   state.SetItemsProcessed(state.iterations() * kFrames);
-  report_arithmetic(state, encode_flops(tokenizer.config(), kLongestTokenMap));
+  report_arithmetic(state, encode_flops(tokenizer.config(), generator::kLongestTokenMap));
 }
 
 void decode(benchmark::State& state) {
-  set_compute_threads(static_cast<int>(state.range(0)));
-  const Tokenizer& tokenizer = base_tokenizer();
-  const TokenizerConfig& config = tokenizer.config();
-  const at::Tensor tokens =
-      torch::randint(config.codes, {kLongestTokenMap, config.rows, config.levels}, torch::kLong);
+  nn::set_compute_threads(static_cast<int>(state.range(0)));
+  const tokenizer::Tokenizer& tokenizer = base_tokenizer();
+  const tokenizer::TokenizerConfig& config = tokenizer.config();
+  const at::Tensor tokens = torch::randint(
+      config.codes, {generator::kLongestTokenMap, config.rows, config.levels}, torch::kLong);
   for (auto _ : state) benchmark::DoNotOptimize(tokenizer.decode(tokens));
   state.SetItemsProcessed(state.iterations() * kFrames);
-  report_arithmetic(state, decode_flops(config, kLongestTokenMap));
+  report_arithmetic(state, decode_flops(config, generator::kLongestTokenMap));
 }
 
 void one_and_all_threads(benchmark::internal::Benchmark* bench) {

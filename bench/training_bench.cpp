@@ -17,20 +17,21 @@
 #include "bench/file_named.h"
 #include "bench/flop_counter.h"
 #include "bench/machine_peak.h"
-#include "evaluation/evaluator_training.h"
-#include "generator/model_training.h"
 #include "nn/threads.h"
+#include "training/evaluator_training.h"
+#include "training/model_training.h"
 
 namespace remomask {
 namespace {
 
 namespace fs = std::filesystem;
 
-const TrainingSplits& training_clips() {
-  static const TrainingSplits splits = [] {
-    const Database database(file_named("REMOMASK_DATABASE", "procedural.sqlite"),
-                            OpenMode::read_only);
-    return TrainingSplits{load_training_set(database, {}), {}, {}};  // no val: steps alone
+const training::TrainingSplits& training_clips() {
+  static const training::TrainingSplits splits = [] {
+    const db::Database database(file_named("REMOMASK_DATABASE", "procedural.sqlite"),
+                                db::OpenMode::read_only);
+    return training::TrainingSplits{
+        db::load_training_set(database, {}), {}, {}};  // no val: steps alone
   }();
   return splits;
 }
@@ -84,30 +85,31 @@ class StepMeter {
 };
 
 void train_evaluator_steps(int64_t steps, const Monitor& monitor) {
-  EvaluatorTrainingOptions options("base");
+  training::EvaluatorTrainingOptions options("base");
   options.movement.steps = 1;
   options.trainer.steps = steps;
-  train_evaluator(training_clips().train, {}, evaluator_preset("base"), options, monitor);
+  training::train_evaluator(training_clips().train, {}, evaluation::evaluator_preset("base"),
+                            options, monitor);
 }
 
 /// Trains a stage, and before it for one step those that it builds on and that are not there.
 void train_stage_steps(const std::string& stage, int64_t steps, const Monitor& monitor) {
   static const StageFolder folder;
-  static GeneratorDataCache prepared;
-  const StageFile file = [](const std::string& each) { return folder.file(each); };
-  TrainingRecipe recipe = training_recipe("base");
-  for (const std::string& earlier : recipe_stages(recipe)) {
+  static training::GeneratorDataCache prepared;
+  const training::StageFile file = [](const std::string& each) { return folder.file(each); };
+  training::TrainingRecipe recipe = training::training_recipe("base");
+  for (const std::string& earlier : training::recipe_stages(recipe)) {
     if (earlier == stage) break;
     if (fs::exists(file(earlier))) continue;
-    set_stage_steps(recipe, earlier, 1);
-    train_stage(recipe, earlier, file, training_clips(), prepared, {});
+    training::set_stage_steps(recipe, earlier, 1);
+    training::train_stage(recipe, earlier, file, training_clips(), prepared, {});
   }
-  set_stage_steps(recipe, stage, steps);
-  train_stage(recipe, stage, file, training_clips(), prepared, monitor);
+  training::set_stage_steps(recipe, stage, steps);
+  training::train_stage(recipe, stage, file, training_clips(), prepared, monitor);
 }
 
 void train_steps(benchmark::State& state, const std::string& stage, int64_t steps) {
-  set_compute_threads(static_cast<int>(state.range(0)));
+  nn::set_compute_threads(static_cast<int>(state.range(0)));
   for (auto _ : state) {
     StepMeter meter(stage);
     if (stage == "evaluator") {

@@ -14,17 +14,17 @@ function(remomask_flags target)
   endif()
 endfunction()
 
-# remomask_room(name SOURCES a.cpp ... USES room ... LIBRARIES target ...)
-# One static library a room. Unity builds, because the torch headers cost
-# 15-20 s a unit: names at namespace scope must be unique within a room.
+# remomask_room(name USES room ... LIBRARIES target ... [SOURCES generated.cpp ...])
+# One static library a room, from all .cpp files of its folder. Unity builds, because
+# the torch headers cost 15-20 s a unit: names at namespace scope must be unique
+# within a room.
 function(remomask_room name)
   cmake_parse_arguments(ARG "" "" "SOURCES;USES;LIBRARIES" ${ARGN})
-  add_library(remomask_${name} STATIC ${ARG_SOURCES})
-  add_library(remomask::${name} ALIAS remomask_${name})
-  set_target_properties(remomask_${name} PROPERTIES EXPORT_NAME ${name})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  add_library(remomask_${name} STATIC ${sources} ${ARG_SOURCES})
   target_compile_features(remomask_${name} PUBLIC cxx_std_20)
   target_include_directories(remomask_${name} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${REMOMASK_INCLUDE}>)
+    ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
   foreach(used IN LISTS ARG_USES)
     target_link_libraries(remomask_${name} PUBLIC remomask_${used})
   endforeach()

@@ -6,11 +6,11 @@
 #include <string_view>
 #include <unordered_set>
 
-#include "base/error.h"
 #include "db/database.h"
 #include "db/database_impl.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
 
@@ -73,4 +73,4 @@ std::vector<CaptionMatch> Database::match_captions(const std::string& fts_query,
   return matches;
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

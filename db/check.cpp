@@ -8,13 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/error.h"
 #include "db/clip_hash.h"
 #include "db/clip_speed.h"
 #include "db/schema.h"
 #include "db/sqlite.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
 
@@ -233,4 +233,4 @@ CheckReport check_database(const std::string& path, const Monitor& monitor) {
   return Checker(connection, monitor).check();
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

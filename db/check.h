@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "remomask/progress.h"
 
-namespace remomask {
+namespace remomask::db {
 
 struct Defect {
   int64_t clip_id = 0;  ///< 0: of the database as a whole
@@ -28,4 +28,4 @@ struct CheckReport {
 /// Interrupted when stopped.
 CheckReport check_database(const std::string& path, const Monitor& monitor = {});
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.h"
 #include "base/hash.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 std::string clip_content_hash(const Motion& motion) {
   std::vector<int64_t> rounded;
@@ -24,4 +24,4 @@ std::string clip_content_hash(const Motion& motion) {
                                        rounded.size() * sizeof(int64_t)));
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace remomask {
+namespace remomask::db {
 
 bool is_whole_motion(const Motion& motion) {
   return motion.frames >= 1 && motion.joints >= 1 &&
@@ -20,4 +20,4 @@ double mean_root_speed(const Motion& motion) {
   return path * kStoredFramesPerSecond / (motion.frames - 1);
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

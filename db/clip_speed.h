@@ -1,8 +1,8 @@
 #pragma once
 
-#include "motion/motion.h"
+#include "remomask/motion.h"
 
-namespace remomask {
+namespace remomask::db {
 
 /// Frames a second of every stored motion.
 constexpr double kStoredFramesPerSecond = 20;
@@ -14,4 +14,4 @@ bool is_whole_motion(const Motion& motion);
 /// frames a second; 0 for a single frame.
 double mean_root_speed(const Motion& motion);
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 
-#include "base/error.h"
 #include "db/database_impl.h"
 #include "db/schema.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
 
@@ -129,4 +129,4 @@ ReadSnapshot::~ReadSnapshot() {
                nullptr);
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "motion/motion.h"
+#include "remomask/motion.h"
 
-namespace remomask {
+namespace remomask::db {
 
 /// One motion of at most 200 frames. Long files become several clips that
 /// overlap, with the same `source_file`.
@@ -182,4 +182,4 @@ class ReadSnapshot {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -1,12 +1,12 @@
 #include <algorithm>
 
-#include "base/error.h"
 #include "db/clip_hash.h"
 #include "db/clip_speed.h"
 #include "db/database.h"
 #include "db/database_impl.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
 
@@ -297,4 +297,4 @@ Motion Database::motion(int64_t id) const {
   return motion;
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

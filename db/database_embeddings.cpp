@@ -4,11 +4,11 @@
 #include <cstring>
 #include <utility>
 
-#include "base/error.h"
 #include "db/database.h"
 #include "db/database_impl.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
 
@@ -155,4 +155,4 @@ std::optional<ClipEmbedding> Database::embedding(const std::string& retriever_ha
   return ClipEmbedding{clip_id, row.floats(0), row.floats(1), row.floats(2)};
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "base/error.h"
 #include "db/database.h"
 #include "db/schema.h"
 #include "db/sqlite.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 /// Answered by an index alone (the tests ask SQLite for its plan): rows of
 /// `embedding` are several kilobytes each.
@@ -64,4 +64,4 @@ struct Database::Impl {
   }
 };
 
-}  // namespace remomask
+}  // namespace remomask::db

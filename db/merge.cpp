@@ -6,9 +6,9 @@
 #include <set>
 #include <tuple>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
 
@@ -226,4 +226,4 @@ MergeReport merge_database(Database& target, const Database& other, const Monito
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

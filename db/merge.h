@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/progress.h"
 #include "db/database.h"
+#include "remomask/progress.h"
 
-namespace remomask {
+namespace remomask::db {
 
 struct MergeReport {
   int64_t clips = 0;       ///< of the other database
@@ -29,4 +29,4 @@ struct MergeReport {
 /// share a motion become one. Throws Error when both are the same file.
 MergeReport merge_database(Database& target, const Database& other, const Monitor& monitor = {});
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -2,11 +2,11 @@
 
 #include <random>
 
-#include "base/error.h"
 #include "db/clip_speed.h"
 #include "db/database.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
 
@@ -245,4 +245,4 @@ void require_readable_schema(const SqliteConnection& connection) {
               std::to_string(version) + "); run: remomask db upgrade " + connection.path());
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -2,7 +2,7 @@
 
 #include "db/sqlite.h"
 
-namespace remomask {
+namespace remomask::db {
 
 /// Marks a SQLite file as a motion database ("RMMK").
 constexpr int64_t kApplicationId = 0x524d4d4b;
@@ -34,4 +34,4 @@ void renew_identity(const SqliteConnection& connection);
 /// True for a file in which no table was made yet.
 bool is_empty_database(const SqliteConnection& connection);
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "db/schema.h"
 #include "db/sqlite.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
 
@@ -150,4 +150,4 @@ RestoreReport restore_database(const std::string& snapshot, const std::string& p
   return report;
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

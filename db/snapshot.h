@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "base/progress.h"
+#include "remomask/progress.h"
 
-namespace remomask {
+namespace remomask::db {
 
 /// Copies a database, while other programs read and write it, as it is at one
 /// moment into one file that appears complete or not at all. Throws Error when
@@ -25,4 +25,4 @@ struct RestoreReport {
 RestoreReport restore_database(const std::string& snapshot, const std::string& path, bool replace,
                                const Monitor& monitor = {});
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::db {
 
 static_assert(std::endian::native == std::endian::little, "stored floats are little-endian");
 
@@ -221,4 +221,4 @@ void SqliteScope::commit() {
   done_ = true;
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

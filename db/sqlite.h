@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace remomask {
+namespace remomask::db {
 
 enum class SqliteMode { read_only, read_write, create };
 
@@ -97,4 +97,4 @@ class SqliteScope {
   bool nested_, done_ = false;
 };
 
-}  // namespace remomask
+}  // namespace remomask::db

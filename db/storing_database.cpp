@@ -4,7 +4,7 @@
 
 #include "db/sqlite.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
 
@@ -44,4 +44,4 @@ StoringDatabase::~StoringDatabase() {
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

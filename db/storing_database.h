@@ -5,7 +5,7 @@
 
 #include "db/database.h"
 
-namespace remomask {
+namespace remomask::db {
 
 /// A database for commands that store: made when it is missing, and taken away
 /// again at the end when nothing was stored in a new one, as after an error.
@@ -25,4 +25,4 @@ class StoringDatabase {
   std::optional<Database> database_;
 };
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -8,22 +8,15 @@
 #include <thread>
 #include <unordered_map>
 
-#include "base/error.h"
 #include "base/hash.h"
 #include "base/machine.h"
 #include "motion/canonical.h"
-#include "motion/caption_mirror.h"
+#include "remomask/error.h"
+#include "text/caption_mirror.h"
 
-namespace remomask {
+namespace remomask::db {
 
 namespace {
-
-const Skeleton& skeleton_named(const std::string& name, const std::string& clip) {
-  if (name == humanml_skeleton().name) return humanml_skeleton();
-  if (name == kit_skeleton().name) return kit_skeleton();
-  throw Error("clip '" + clip + "' has the unknown skeleton '" + name +
-              "'; it was stored by another program, remove it");
-}
 
 std::string label_text(const nlohmann::json& labels, const char* key) {
   const auto label = labels.find(key);
@@ -41,14 +34,14 @@ struct LoadedClip {
   bool with_twin = false;
 };
 
-void fill_features(const LoadedClip& loaded, const Skeleton& skeleton, FeatureMode mode,
+void fill_features(const LoadedClip& loaded, const Skeleton& skeleton, motion::FeatureMode mode,
                    std::vector<TrainingClip>& result) {
   TrainingClip& clip = result[loaded.first];
   try {
-    clip.features = extract_features_all_frames(loaded.motion, skeleton, mode);
+    clip.features = motion::extract_features_all_frames(loaded.motion, skeleton, mode);
     if (loaded.with_twin) {
-      result[loaded.first + 1].features =
-          extract_features_all_frames(mirror_motion(loaded.motion, skeleton), skeleton, mode);
+      result[loaded.first + 1].features = motion::extract_features_all_frames(
+          motion::mirror_motion(loaded.motion, skeleton), skeleton, mode);
     }
   } catch (const Error& error) {
     throw Error("clip '" + clip.name + "': " + error.what());
@@ -59,10 +52,10 @@ TrainingClip mirror_twin(const TrainingClip& original, const std::string& name) 
   TrainingClip twin = original;
   twin.name = name;
   twin.mirrored = !original.mirrored;
-  for (std::string& caption : twin.captions) caption = mirror_caption(caption);
+  for (std::string& caption : twin.captions) caption = text::mirror_caption(caption);
   // "walk-turn-left" becomes "walk-turn-right".
-  twin.content = mirror_caption(original.content);
-  twin.meaning = mirror_caption(original.meaning);
+  twin.content = text::mirror_caption(original.content);
+  twin.meaning = text::mirror_caption(original.meaning);
   return twin;
 }
 
@@ -99,7 +92,7 @@ std::vector<TrainingClip> load_training_set(const Database& database,
     const bool wanted = listed(options.splits, clip.split) &&
                         (options.sources.empty() || listed(options.sources, clip.source));
     if (!wanted || clip.frames < options.min_frames) continue;
-    const Skeleton& own = skeleton_named(clip.skeleton, clip.name);
+    const Skeleton& own = skeleton_named(clip.skeleton);
     if (skeleton && skeleton != &own) {
       throw Error(database.path() + ": clips '" + skeleton_clip + "' and '" + clip.name +
                   "' have different skeletons; keep each skeleton in a database of its own");
@@ -165,4 +158,4 @@ std::string training_set_identity(const std::vector<TrainingClip>& clips) {
   return content_hash(text);
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -7,7 +7,7 @@
 #include "db/database.h"
 #include "motion/features.h"
 
-namespace remomask {
+namespace remomask::db {
 
 /// A clip as the networks see it.
 struct TrainingClip {
@@ -15,8 +15,8 @@ struct TrainingClip {
   std::string name;     ///< "M" + name for a twin made here
   bool mirrored = false;
   std::string split;
-  int group = 0;      ///< equal for clips that are the same motion (see Clip::group)
-  Features features;  ///< as many rows as the clip has frames (at most 200)
+  int group = 0;              ///< equal for clips that are the same motion (see Clip::group)
+  motion::Features features;  ///< as many rows as the clip has frames (at most 200)
   std::vector<std::string> captions;  ///< mirrored for a twin
   std::string content;                ///< label "content" or first action; "" when unknown
   /// What the clip shows and how, labels "content" and "style"; "" when it has no
@@ -28,7 +28,7 @@ struct TrainingClip {
 struct TrainingSetOptions {
   std::vector<std::string> splits = {"train"};
   std::vector<std::string> sources;  ///< data sets (Clip::source); empty: all
-  FeatureMode mode = FeatureMode::fixed;
+  motion::FeatureMode mode = motion::FeatureMode::fixed;
   bool add_mirrored = true;  ///< twins for clips whose mirror is not stored
   int min_frames = 20;
   int max_frames = 196;  ///< longer clips are cut at the end
@@ -46,4 +46,4 @@ std::vector<TrainingClip> load_training_set(const Database& database,
 /// Hash of what a training sees of the clips: names, lengths, captions, meanings.
 std::string training_set_identity(const std::vector<TrainingClip>& clips);
 
-}  // namespace remomask
+}  // namespace remomask::db

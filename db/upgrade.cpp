@@ -5,7 +5,7 @@
 #include "db/schema.h"
 #include "db/sqlite.h"
 
-namespace remomask {
+namespace remomask::db {
 
 UpgradeReport upgrade_database(const std::string& path) {
   UpgradeReport report;
@@ -24,4 +24,4 @@ UpgradeReport upgrade_database(const std::string& path) {
   return report;
 }
 
-}  // namespace remomask
+}  // namespace remomask::db

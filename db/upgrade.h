@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace remomask {
+namespace remomask::db {
 
 struct UpgradeReport {
   int64_t version_before = 0, version = 0;  ///< of the format
@@ -15,4 +15,4 @@ struct UpgradeReport {
 /// Error as Database() does; the old content stays then.
 UpgradeReport upgrade_database(const std::string& path);
 
-}  // namespace remomask
+}  // namespace remomask::db

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/error.h"
 #include "evaluation/evaluator_network.h"
 #include "evaluation/t2m_evaluator.h"
 #include "motion/canonical.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -30,7 +30,7 @@ struct Evaluator::Impl {
   std::string hash;
 };
 
-Evaluator::Evaluator(const ModelStage& stage) : impl_(std::make_unique<Impl>()) {
+Evaluator::Evaluator(const nn::ModelStage& stage) : impl_(std::make_unique<Impl>()) {
   if (stage.kind != "evaluator") {
     throw Error("this is no evaluator but a " + stage.kind + "; name a file with an evaluator");
   }
@@ -41,9 +41,9 @@ Evaluator::Evaluator(const ModelStage& stage) : impl_(std::make_unique<Impl>()) 
     throw Error(std::string("the evaluator's config is broken: ") + error.what());
   }
   impl_->network = EvaluatorNetwork(config);
-  load_module_tensors(*impl_->network, stage.tensors, "evaluator");
+  nn::load_module_tensors(*impl_->network, stage.tensors, "evaluator");
   impl_->network->eval();
-  impl_->hash = stage_hash(stage);
+  impl_->hash = nn::stage_hash(stage);
 }
 
 Evaluator::~Evaluator() = default;
@@ -66,7 +66,7 @@ at::Tensor Evaluator::embed_text(const std::vector<std::string>& captions) const
   return parts.empty() ? torch::zeros({0, config().embedding}) : torch::cat(parts);
 }
 
-at::Tensor Evaluator::embed_motion(const std::vector<const Features*>& motions) const {
+at::Tensor Evaluator::embed_motion(const std::vector<const motion::Features*>& motions) const {
   at::NoGradGuard no_grad;
   // Similar lengths together: less padding.
   std::vector<int64_t> order(motions.size());
@@ -78,7 +78,7 @@ at::Tensor Evaluator::embed_motion(const std::vector<const Features*>& motions) 
   for (size_t first = 0; first < order.size(); first += kEmbeddingBatch) {
     std::vector<EvaluatorCrop> crops;
     for (size_t i = first; i < std::min(order.size(), first + kEmbeddingBatch); ++i) {
-      const Features* features = motions[static_cast<size_t>(order[i])];
+      const motion::Features* features = motions[static_cast<size_t>(order[i])];
       crops.push_back({features, 0, features->frames});
     }
     parts.push_back(impl_->network->embed_motion(impl_->network->batch(crops)));
@@ -89,15 +89,15 @@ at::Tensor Evaluator::embed_motion(const std::vector<const Features*>& motions) 
 
 at::Tensor Evaluator::embed_motion(const Motion& motion) const {
   const Skeleton& skeleton = humanml_skeleton();
-  const Features features =
-      extract_features_all_frames(canonicalize(motion, skeleton), skeleton, feature_mode());
-  return embed_motion(std::vector<const Features*>{&features})[0];
+  const motion::Features features = motion::extract_features_all_frames(
+      motion::canonicalize(motion, skeleton), skeleton, feature_mode());
+  return embed_motion(std::vector<const motion::Features*>{&features})[0];
 }
 
 Evaluator load_evaluator(const std::string& path) {
-  const TensorFile file = load_safetensors(path);
+  const nn::TensorFile file = nn::load_safetensors(path);
   return Evaluator(is_t2m_evaluator(file) ? import_t2m_evaluator(file, path)
-                                          : load_stage(path, "evaluator"));
+                                          : nn::load_stage(path, "evaluator"));
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -1,8 +1,8 @@
 #include "evaluation/evaluator_config.h"
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 EvaluatorConfig evaluator_preset(const std::string& preset) {
   EvaluatorConfig config;
@@ -28,7 +28,7 @@ EvaluatorConfig evaluator_preset(const std::string& preset) {
 void to_json(nlohmann::json& json, const EvaluatorConfig& config) {
   json = {{"preset", config.preset},
           {"skeleton", config.skeleton},
-          {"mode", feature_mode_name(config.mode)},
+          {"mode", motion::feature_mode_name(config.mode)},
           {"movement_width", config.movement_width},
           {"motion_hidden", config.motion_hidden},
           {"text_hidden", config.text_hidden},
@@ -43,7 +43,7 @@ void to_json(nlohmann::json& json, const EvaluatorConfig& config) {
 void from_json(const nlohmann::json& json, EvaluatorConfig& config) {
   json.at("preset").get_to(config.preset);
   json.at("skeleton").get_to(config.skeleton);
-  config.mode = parse_feature_mode(json.at("mode").get<std::string>());
+  config.mode = motion::parse_feature_mode(json.at("mode").get<std::string>());
   json.at("movement_width").get_to(config.movement_width);
   json.at("motion_hidden").get_to(config.motion_hidden);
   json.at("text_hidden").get_to(config.text_hidden);
@@ -55,4 +55,4 @@ void from_json(const nlohmann::json& json, EvaluatorConfig& config) {
   json.at("vocabulary").get_to(config.vocabulary);
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

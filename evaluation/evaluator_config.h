@@ -7,14 +7,14 @@
 
 #include "motion/features.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// Sizes of the text-motion evaluator (Guo et al., CVPR 2022). The defaults are
 /// the preset `base`.
 struct EvaluatorConfig {
   std::string preset = "base";
   std::string skeleton = "humanml3d";
-  FeatureMode mode = FeatureMode::fixed;
+  motion::FeatureMode mode = motion::FeatureMode::fixed;
   int64_t movement_width = 256;  ///< of the convolutions and of their output
   int64_t motion_hidden = 256;   ///< of the GRU over movement tokens, each direction
   int64_t text_hidden = 192;     ///< of the GRU over words, each direction
@@ -34,4 +34,4 @@ EvaluatorConfig evaluator_preset(const std::string& preset);
 void to_json(nlohmann::json& json, const EvaluatorConfig& config);
 void from_json(const nlohmann::json& json, EvaluatorConfig& config);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

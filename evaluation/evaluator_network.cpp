@@ -11,10 +11,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "evaluation/word_classes.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -24,13 +24,6 @@ constexpr double kLeastSpread = 1e-4;
 
 torch::nn::LeakyReLU leaky() {
   return torch::nn::LeakyReLU(torch::nn::LeakyReLUOptions().negative_slope(kSlope));
-}
-
-const Skeleton& evaluator_skeleton(const std::string& name) {
-  for (const Skeleton* skeleton : {&humanml_skeleton(), &kit_skeleton()}) {
-    if (skeleton->name == name) return *skeleton;
-  }
-  throw Error("the evaluator does not know the skeleton '" + name + "'; use humanml3d or kit");
 }
 
 torch::nn::Conv1d halving(int64_t input, int64_t output) {
@@ -114,8 +107,7 @@ at::Tensor GruHeadImpl::embed_classes(const at::Tensor& classes) {
 EvaluatorNetworkImpl::EvaluatorNetworkImpl(const EvaluatorConfig& config)
     : config_(config),
       words_(config.vocabulary, config.max_words),
-      mean_(register_buffer("mean",
-                            torch::zeros({evaluator_skeleton(config.skeleton).feature_dim()}))),
+      mean_(register_buffer("mean", torch::zeros({skeleton_named(config.skeleton).feature_dim()}))),
       deviation_(register_buffer("deviation", torch::ones({mean_.size(0)}))),
       movement_encoder_(mean_.size(0) - kContactColumns, config.movement_width),
       motion_encoder_(config.movement_width, config.motion_hidden, config.embedding, 0),
@@ -170,11 +162,11 @@ MovementBatch EvaluatorNetworkImpl::batch(const std::vector<EvaluatorCrop>& crop
   return result;
 }
 
-void EvaluatorNetworkImpl::set_statistics(const std::vector<const Features*>& train) {
+void EvaluatorNetworkImpl::set_statistics(const std::vector<const motion::Features*>& train) {
   at::NoGradGuard no_grad;
   at::Tensor sum = torch::zeros({columns()}, torch::kDouble), squares = sum.clone();
   int64_t count = 0;
-  for (const Features* clip : train) {
+  for (const motion::Features* clip : train) {
     if (clip->dim != columns()) throw Error("a motion has another skeleton than the evaluator");
     const at::Tensor rows = torch::from_blob(const_cast<float*>(clip->values.data()),
                                              {clip->frames, columns()}, torch::kFloat)
@@ -187,7 +179,7 @@ void EvaluatorNetworkImpl::set_statistics(const std::vector<const Features*>& tr
   const double frames = static_cast<double>(count);
   const at::Tensor mean = sum / frames;
   at::Tensor deviation = (squares / frames - mean.square()).clamp_min(0).sqrt();
-  const int64_t joints = evaluator_skeleton(config_.skeleton).joints();
+  const int64_t joints = skeleton_named(config_.skeleton).joints();
   const int64_t positions = 4, rotations = positions + 3 * (joints - 1),
                 velocities = rotations + 6 * (joints - 1), contacts = velocities + 3 * joints;
   const std::vector<int64_t> edges = {0,         1,          3,        positions,
@@ -202,4 +194,4 @@ void EvaluatorNetworkImpl::set_statistics(const std::vector<const Features*>& tr
   deviation_.copy_(deviation);
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -12,7 +12,7 @@
 #include "evaluation/evaluator_config.h"
 #include "evaluation/evaluator_words.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// Frames behind one movement token.
 inline constexpr int64_t kFramesPerMovement = 4;
@@ -72,7 +72,7 @@ struct MovementBatch {
 
 /// Part of a motion; its features must outlive it.
 struct EvaluatorCrop {
-  const Features* features = nullptr;
+  const motion::Features* features = nullptr;
   int first = 0, frames = 0;
 };
 
@@ -96,7 +96,7 @@ class EvaluatorNetworkImpl : public torch::nn::Module {
   /// Mean and deviation of each column over all frames; deviations are averaged
   /// over the groups of columns of HumanML3D, those of root velocity, height and
   /// contacts divided by root_weight.
-  void set_statistics(const std::vector<const Features*>& train);
+  void set_statistics(const std::vector<const motion::Features*>& train);
 
   MovementEncoder& movement_encoder() { return movement_encoder_; }
   const EvaluatorConfig& config() const { return config_; }
@@ -113,4 +113,4 @@ class EvaluatorNetworkImpl : public torch::nn::Module {
 };
 TORCH_MODULE(EvaluatorNetwork);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -7,12 +7,12 @@
 #include <functional>
 #include <limits>
 
-#include "base/error.h"
 #include "evaluation/label_prompts.h"
-#include "generator/tokenizer_metrics.h"
+#include "evaluation/tokenizer_metrics.h"
+#include "remomask/error.h"
 #include "text/caption.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -20,8 +20,9 @@ constexpr uint64_t kCaptionStream = 0x636170;
 
 }  // namespace
 
-BatchKeys batch_keys(const TrainingClip& clip, const std::string& caption, DistinctBy distinct) {
-  BatchKeys keys = {"caption " + normalise_caption(caption)};
+BatchKeys batch_keys(const db::TrainingClip& clip, const std::string& caption,
+                     DistinctBy distinct) {
+  BatchKeys keys = {"caption " + text::normalise_caption(caption)};
   if (distinct == DistinctBy::labels) {
     keys.push_back(!clip.meaning.empty()   ? "meaning " + clip.meaning
                    : !clip.content.empty() ? "content " + clip.content
@@ -31,15 +32,15 @@ BatchKeys batch_keys(const TrainingClip& clip, const std::string& caption, Disti
 }
 
 std::vector<EmbeddedPairs> real_pairs(const Evaluator& evaluator,
-                                      const std::vector<TrainingClip>& clips, DistinctBy distinct,
-                                      int draws, uint64_t seed) {
+                                      const std::vector<db::TrainingClip>& clips,
+                                      DistinctBy distinct, int draws, uint64_t seed) {
   const at::Tensor motion = evaluator.embed_motion(clip_features(clips));
   std::vector<EmbeddedPairs> runs;
   for (int draw = 0; draw < draws; ++draw) {
     CounterRandom random(seed, mix_seed(kCaptionStream, static_cast<uint64_t>(draw)));
     EmbeddedPairs run;
     std::vector<std::string> captions;
-    for (const TrainingClip& clip : clips) {
+    for (const db::TrainingClip& clip : clips) {
       if (clip.captions.empty()) throw Error("clip '" + clip.name + "' has no caption");
       captions.push_back(clip.captions[random.below(clip.captions.size())]);
       run.keys.push_back(batch_keys(clip, captions.back(), distinct));
@@ -65,8 +66,8 @@ ContentAccuracy content_accuracy(const std::vector<int>& judged, const std::vect
 }
 
 std::vector<int> nearest_contents(const Evaluator& evaluator,
-                                  const std::vector<TrainingClip>& clips,
-                                  const std::vector<TrainingClip>& gallery) {
+                                  const std::vector<db::TrainingClip>& clips,
+                                  const std::vector<db::TrainingClip>& gallery) {
   const at::Tensor distances = torch::cdist(evaluator.embed_motion(clip_features(clips)),
                                             evaluator.embed_motion(clip_features(gallery)), 2.0)
                                    .contiguous();
@@ -77,7 +78,7 @@ std::vector<int> nearest_contents(const Evaluator& evaluator,
       continue;
     }
     const float* row = distances.data_ptr<float>() + i * gallery.size();
-    const TrainingClip* nearest = nullptr;
+    const db::TrainingClip* nearest = nullptr;
     float least = std::numeric_limits<float>::infinity();
     for (size_t j = 0; j < gallery.size(); ++j) {
       const bool usable = gallery[j].group != clips[i].group && !gallery[j].content.empty();
@@ -94,37 +95,38 @@ std::vector<int> nearest_contents(const Evaluator& evaluator,
 }
 
 EvaluatorQuality measure_evaluator(const Evaluator& evaluator,
-                                   const std::vector<TrainingClip>& all_clips,
-                                   const std::vector<TrainingClip>& train,
-                                   const std::vector<TrainingClip>& val,
+                                   const std::vector<db::TrainingClip>& all_clips,
+                                   const std::vector<db::TrainingClip>& train,
+                                   const std::vector<db::TrainingClip>& val,
                                    const GenerationFigureOptions& options) {
-  std::vector<TrainingClip> clips = all_clips;
-  std::erase_if(clips, [](const TrainingClip& clip) { return clip.captions.empty(); });
+  std::vector<db::TrainingClip> clips = all_clips;
+  std::erase_if(clips, [](const db::TrainingClip& clip) { return clip.captions.empty(); });
   if (clips.empty()) throw Error("no clip has a caption; import a captions file");
   const auto by_captions =
       real_pairs(evaluator, clips, DistinctBy::captions, options.draws, options.seed);
   const auto by_labels =
       real_pairs(evaluator, clips, DistinctBy::labels, options.draws, options.seed);
-  std::vector<TrainingClip> gallery = clips;
+  std::vector<db::TrainingClip> gallery = clips;
   gallery.insert(gallery.end(), train.begin(), train.end());
   gallery.insert(gallery.end(), val.begin(), val.end());
   const std::vector<int> judged = nearest_contents(evaluator, clips, gallery);
   std::map<std::string, int> training_clips;
-  for (const TrainingClip& clip : train) ++training_clips[clip.content];
+  for (const db::TrainingClip& clip : train) ++training_clips[clip.content];
 
   EvaluatorQuality quality;
-  const auto add = [&](const char* name, const std::function<bool(const TrainingClip&)>& member) {
+  const auto add = [&](const char* name,
+                       const std::function<bool(const db::TrainingClip&)>& member) {
     std::vector<bool> members;
-    for (const TrainingClip& clip : clips) members.push_back(member(clip));
+    for (const db::TrainingClip& clip : clips) members.push_back(member(clip));
     if (std::find(members.begin(), members.end(), true) == members.end()) return;
     quality.subsets.push_back({name, measure_pairs(by_captions, options, members),
                                measure_pairs(by_labels, options, members),
                                content_accuracy(judged, members)});
   };
-  add("all", [](const TrainingClip&) { return true; });
-  add("take", [](const TrainingClip& clip) { return clip.unseen == "take"; });
-  add("pair", [](const TrainingClip& clip) { return clip.unseen == "pair"; });
-  add("rare", [&](const TrainingClip& clip) {
+  add("all", [](const db::TrainingClip&) { return true; });
+  add("take", [](const db::TrainingClip& clip) { return clip.unseen == "take"; });
+  add("pair", [](const db::TrainingClip& clip) { return clip.unseen == "pair"; });
+  add("rare", [&](const db::TrainingClip& clip) {
     return !clip.content.empty() && training_clips[clip.content] < kRareClips;
   });
   if (clips.size() > 1 && train.size() > 1) {
@@ -134,4 +136,4 @@ EvaluatorQuality measure_evaluator(const Evaluator& evaluator,
   return quality;
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

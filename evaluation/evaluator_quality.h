@@ -10,20 +10,20 @@
 #include "evaluation/generation_metrics.h"
 #include "evaluation/side_rule.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// What no two items of a batch of R-precision may share.
 enum class DistinctBy { captions, labels };
 
 /// Keys of a clip with one of its captions: the normalised caption; for `labels`
 /// also what the clip shows, by TrainingClip::meaning, else content, else group.
-BatchKeys batch_keys(const TrainingClip& clip, const std::string& caption, DistinctBy distinct);
+BatchKeys batch_keys(const db::TrainingClip& clip, const std::string& caption, DistinctBy distinct);
 
 /// Pairs of real clips, one run a draw: a random caption of each clip, a function
 /// of (seed, draw). `real` holds the clips' own vectors. Clips need captions.
 std::vector<EmbeddedPairs> real_pairs(const Evaluator& evaluator,
-                                      const std::vector<TrainingClip>& clips, DistinctBy distinct,
-                                      int draws, uint64_t seed);
+                                      const std::vector<db::TrainingClip>& clips,
+                                      DistinctBy distinct, int draws, uint64_t seed);
 
 /// Contents of nearest motions.
 struct ContentAccuracy {
@@ -40,8 +40,8 @@ ContentAccuracy content_accuracy(const std::vector<int>& judged, const std::vect
 /// never one of the same group) has its content: 1 or 0; -1 for a clip without
 /// content. Throws Error when the gallery has no clip of another group.
 std::vector<int> nearest_contents(const Evaluator& evaluator,
-                                  const std::vector<TrainingClip>& clips,
-                                  const std::vector<TrainingClip>& gallery);
+                                  const std::vector<db::TrainingClip>& clips,
+                                  const std::vector<db::TrainingClip>& gallery);
 
 struct EvaluatorSubset {
   std::string name;            ///< "all", "take", "pair" or "rare"
@@ -63,9 +63,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EvaluatorQuality, subsets, fid_to_train, side
 /// Figures of `clips` (without captions: left out); contents are looked for among
 /// train, val and the clips themselves. `sides` stays empty.
 EvaluatorQuality measure_evaluator(const Evaluator& evaluator,
-                                   const std::vector<TrainingClip>& clips,
-                                   const std::vector<TrainingClip>& train,
-                                   const std::vector<TrainingClip>& val,
+                                   const std::vector<db::TrainingClip>& clips,
+                                   const std::vector<db::TrainingClip>& train,
+                                   const std::vector<db::TrainingClip>& val,
                                    const GenerationFigureOptions& options);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <map>
 
-#include "base/error.h"
 #include "evaluation/word_classes.h"
+#include "remomask/error.h"
 #include "text/caption.h"
 #include "text/wordpiece.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
 std::vector<std::string> letters_only_words(const std::string& caption) {
-  std::vector<std::string> words = split_words(normalise_caption(caption));
+  std::vector<std::string> words = text::split_words(text::normalise_caption(caption));
   std::erase_if(words, [](const std::string& word) {
     return !std::all_of(word.begin(), word.end(), [](char c) { return c >= 'a' && c <= 'z'; });
   });
@@ -89,4 +89,4 @@ std::vector<std::string> evaluator_vocabulary(const std::vector<std::string>& ca
   return vocabulary;
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

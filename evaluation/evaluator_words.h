@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// Captions as the evaluator's text encoder reads them.
 struct WordBatch {
@@ -42,4 +42,4 @@ class EvaluatorWords {
 /// alphabetical.
 std::vector<std::string> evaluator_vocabulary(const std::vector<std::string>& captions);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -1,5 +1,7 @@
 #include "evaluation/generation_metrics.h"
 
+#include <torch/types.h>
+// After the types, which it does not include.
 #include <torch/linalg.h>
 #include <torch/utils.h>
 
@@ -8,9 +10,9 @@
 #include <limits>
 #include <set>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -243,4 +245,4 @@ GenerationFigures measure_pairs(const std::vector<EmbeddedPairs>& runs,
   return figures;
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

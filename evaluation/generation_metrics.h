@@ -10,7 +10,7 @@
 
 #include "base/random.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 // Metrics of text-to-motion generation on embeddings [N, E] (Guo et al., CVPR
 // 2022; protocol in docs/results.md). All are computed in double precision.
@@ -97,4 +97,4 @@ GenerationFigures measure_pairs(const std::vector<EmbeddedPairs>& runs,
                                 const GenerationFigureOptions& options,
                                 const std::vector<bool>& members = {});
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -6,11 +6,11 @@
 #include <functional>
 #include <limits>
 
-#include "base/error.h"
 #include "db/training_set.h"
 #include "evaluation/label_prompts.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -31,15 +31,15 @@ at::Tensor embedding_rows(const std::vector<const JudgedMotion*>& motions, int64
 
 /// What the report needs to know of the prompts besides their texts.
 struct PromptFacts {
-  std::map<int64_t, TrainingClip> clips;      ///< only what batch_keys() reads
+  std::map<int64_t, db::TrainingClip> clips;  ///< only what batch_keys() reads
   std::map<std::string, int> training_clips;  ///< content -> clips of the split train
 };
 
-PromptFacts prompt_facts(const Database& database) {
+PromptFacts prompt_facts(const db::Database& database) {
   PromptFacts facts;
-  for (const Clip& clip : database.clips()) {
-    TrainingClip known;
-    known.content = clip_content(clip);
+  for (const db::Clip& clip : database.clips()) {
+    db::TrainingClip known;
+    known.content = db::clip_content(clip);
     if (clip.labels.contains("content")) {
       known.meaning = known.content + '/' + clip.labels.value("style", "");
     }
@@ -52,7 +52,7 @@ PromptFacts prompt_facts(const Database& database) {
 
 class ReportBuilder {
  public:
-  ReportBuilder(const GenerationRun& run, const Database& database, const JudgeGallery& gallery,
+  ReportBuilder(const GenerationRun& run, const db::Database& database, const JudgeGallery& gallery,
                 const Evaluator& evaluator, const GenerationReportOptions& options)
       : run_(run), gallery_(gallery), options_(options), facts_(prompt_facts(database)) {
     std::vector<std::string> texts;
@@ -120,7 +120,7 @@ class ReportBuilder {
 
   MotionFigures figures(const MotionTable& table, const std::vector<bool>& members) const {
     MotionFigures result;
-    std::vector<PhysicalMetrics> physical;
+    std::vector<pipeline::PhysicalMetrics> physical;
     std::vector<int> judged;
     for (const auto& motions : table) {
       for (size_t i = 0; i < motions.size(); ++i) {
@@ -183,11 +183,11 @@ class ReportBuilder {
 
 }  // namespace
 
-GenerationReport report_generation(const GenerationRun& run, const Database& database,
+GenerationReport report_generation(const GenerationRun& run, const db::Database& database,
                                    const JudgeGallery& gallery, const Evaluator& evaluator,
                                    const GenerationReportOptions& options) {
   if (run.outcomes.size() != run.jobs.size()) throw Error("the run is not finished");
   return ReportBuilder(run, database, gallery, evaluator, options).report();
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -10,7 +10,7 @@
 #include "evaluation/generation_run.h"
 #include "evaluation/side_rule.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// All measures of one set of motions.
 struct MotionFigures {
@@ -18,7 +18,7 @@ struct MotionFigures {
   GenerationFigures captions;  ///< batches with distinct captions
   GenerationFigures labels;    ///< batches with distinct captions, contents and styles
   SideCounts sides;            ///< prompts that name one side
-  PhysicalSummary physical;
+  pipeline::PhysicalSummary physical;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MotionFigures, content, captions, labels, sides, physical)
 
@@ -54,8 +54,8 @@ struct GenerationReportOptions {
 
 /// Figures of a finished run beside those of the prompts' own clips. Draw d uses
 /// repeat d mod repeats.
-GenerationReport report_generation(const GenerationRun& run, const Database& database,
+GenerationReport report_generation(const GenerationRun& run, const db::Database& database,
                                    const JudgeGallery& gallery, const Evaluator& evaluator,
                                    const GenerationReportOptions& options = {});
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

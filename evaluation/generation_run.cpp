@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "base/random.h"
 #include "db/training_set.h"
 #include "evaluation/side_rule.h"
-#include "index/filter.h"
+#include "remomask/error.h"
+#include "search/filter.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -44,7 +44,7 @@ std::vector<GenerationJob> make_jobs(const std::vector<LabelPrompt>& prompts,
   return jobs;
 }
 
-nlohmann::json make_protocol(const Database& database, const JudgeGallery& gallery,
+nlohmann::json make_protocol(const db::Database& database, const JudgeGallery& gallery,
                              const MotionJudge& judge, const Evaluator& evaluator,
                              const GenerationRunOptions& options) {
   return {{"protocol", kProtocolName},
@@ -122,18 +122,18 @@ class GenerationResults {
 
 }  // namespace
 
-JudgeGallery::JudgeGallery(const Database& database, const MotionJudge& judge,
+JudgeGallery::JudgeGallery(const db::Database& database, const MotionJudge& judge,
                            const std::vector<std::string>& splits)
     : judge_(judge) {
-  const std::vector<Clip> clips = database.clips();
-  std::map<int64_t, const Clip*> by_id;
-  for (const Clip& clip : clips) by_id.emplace(clip.id, &clip);
-  ClipFilter filter;
+  const std::vector<db::Clip> clips = database.clips();
+  std::map<int64_t, const db::Clip*> by_id;
+  for (const db::Clip& clip : clips) by_id.emplace(clip.id, &clip);
+  search::ClipFilter filter;
   filter.splits = splits;
   const auto& known = judge.clip_ids();
-  for (const int64_t id : matching_clips(clips, filter)) {
-    const Clip& clip = *by_id.at(id);
-    const std::string content = clip_content(clip);
+  for (const int64_t id : search::matching_clips(clips, filter)) {
+    const db::Clip& clip = *by_id.at(id);
+    const std::string content = db::clip_content(clip);
     // A clip of unknown content could only be wrong.
     if (content.empty() || !std::binary_search(known.begin(), known.end(), id)) continue;
     ids_.push_back(id);
@@ -151,7 +151,7 @@ JudgedMotion JudgeGallery::judge(const LabelPrompt& prompt, const Motion& motion
                                  const Evaluator& evaluator, bool exclude_own_group) const {
   JudgedMotion result;
   const Skeleton& skeleton = humanml_skeleton();
-  result.physical = measure_physical(motion, skeleton);
+  result.physical = pipeline::measure_physical(motion, skeleton);
   if (!result.physical.finite) return result;  // wrong by any measure
   const at::Tensor embedding = evaluator.embed_motion(motion).contiguous();
   result.embedding = {embedding.data_ptr<float>(), embedding.data_ptr<float>() + embedding.numel()};
@@ -170,7 +170,7 @@ JudgedMotion JudgeGallery::judge(const LabelPrompt& prompt, const Motion& motion
   return result;
 }
 
-GenerationRun run_generation(const Database& database, const JudgeGallery& gallery,
+GenerationRun run_generation(const db::Database& database, const JudgeGallery& gallery,
                              const MotionJudge& judge, const Evaluator& evaluator,
                              const GenerateMotion& generate, const GenerationRunOptions& options,
                              const Monitor& monitor) {
@@ -204,4 +204,4 @@ GenerationRun run_generation(const Database& database, const JudgeGallery& galle
   return run;
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
 #include "db/database.h"
 #include "evaluation/label_prompts.h"
 #include "evaluation/motion_judge.h"
-#include "evaluation/physical.h"
+#include "pipeline/physical.h"
+#include "remomask/progress.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 // Generates the motions of an evaluation and keeps what became of each, one line
 // a motion: the report (generation_report.h) is made of these lines.
@@ -38,7 +38,7 @@ struct JudgedMotion {
   double distance = 0;                        ///< to the nearest clip, in the judge's space
   bool right = false;                         ///< nearest_content is the prompt's
   std::string shown_side;  ///< "left" or "right"; "" for none, or where none is asked
-  PhysicalMetrics physical;
+  pipeline::PhysicalMetrics physical;
   std::vector<float> embedding;  ///< in the evaluator's space; empty when not finite
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedMotion, nearest_clip, nearest_content, distance, right,
@@ -67,7 +67,7 @@ class JudgeGallery {
  public:
   /// The judge's clips of these splits with a content. Throws Error when there
   /// is none.
-  JudgeGallery(const Database& database, const MotionJudge& judge,
+  JudgeGallery(const db::Database& database, const MotionJudge& judge,
                const std::vector<std::string>& splits);
 
   /// `exclude_own_group`: leave out clips of the prompt's group (for real
@@ -98,9 +98,9 @@ struct GenerationRun {
 /// Generates and judges all motions. Every outcome is written to `results_path`
 /// at once; a run that was stopped (Interrupted) goes on where it was. Throws
 /// Error when the file belongs to another protocol, database or generator.
-GenerationRun run_generation(const Database& database, const JudgeGallery& gallery,
+GenerationRun run_generation(const db::Database& database, const JudgeGallery& gallery,
                              const MotionJudge& judge, const Evaluator& evaluator,
                              const GenerateMotion& generate, const GenerationRunOptions& options,
                              const Monitor& monitor = {});
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "motion/motion.h"
+#include "remomask/motion.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// Motions one after the other as one: each is turned around +Y and moved on the
 /// floor so that its root begins where the one before ended, facing the same
@@ -13,4 +13,4 @@ namespace remomask {
 /// all together. Throws Error for no motions or one without frames.
 Motion join_motions(const std::vector<Motion>& motions, const Skeleton& skeleton, int fade = 5);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -2,17 +2,17 @@
 
 #include <map>
 
-#include "base/error.h"
 #include "base/random.h"
 #include "db/training_set.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
 /// Clips of one content in the order in which they are taken.
 struct ContentClips {
-  std::vector<const Clip*> clips;
+  std::vector<const db::Clip*> clips;
   size_t taken = 0;
 };
 
@@ -24,13 +24,13 @@ PromptDraw parse_prompt_draw(const std::string& name) {
   throw Error("unknown draw of prompts \"" + name + "\"; use even or uniform");
 }
 
-std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
+std::vector<LabelPrompt> choose_label_prompts(const std::vector<db::Clip>& clips,
                                               const std::string& split, int count, uint64_t seed,
                                               PromptDraw draw) {
-  std::map<std::string, std::vector<const Clip*>> by_content;
-  for (const Clip& clip : clips) {
+  std::map<std::string, std::vector<const db::Clip*>> by_content;
+  for (const db::Clip& clip : clips) {
     if (clip.split != split || clip.mirrored || clip.captions.empty()) continue;
-    if (const std::string content = clip_content(clip); !content.empty()) {
+    if (const std::string content = db::clip_content(clip); !content.empty()) {
       // A uniform draw has all clips in one class, whatever their content.
       by_content[draw == PromptDraw::even ? content : ""].push_back(&clip);
     }
@@ -53,17 +53,17 @@ std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
   for (size_t turn = 0; prompts.size() < wanted; ++turn) {
     ContentClips& source = turns[turn % turns.size()].second;
     if (count == 0 && source.taken == source.clips.size()) continue;
-    const Clip& clip = *source.clips[source.taken % source.clips.size()];
+    const db::Clip& clip = *source.clips[source.taken % source.clips.size()];
     const size_t round = source.taken / source.clips.size();
     ++source.taken;
     const std::string unseen = clip.labels.value("unseen", "");
     const size_t first = CounterRandom(mix_seed(seed, static_cast<uint64_t>(clip.id), 1))
                              .below(clip.captions.size());
-    prompts.push_back({clip.id, clip.name, clip.group,
-                       clip.captions[(first + round) % clip.captions.size()], clip_content(clip),
-                       unseen, clip.frames, mix_seed(seed, prompts.size(), 2)});
+    prompts.push_back(
+        {clip.id, clip.name, clip.group, clip.captions[(first + round) % clip.captions.size()],
+         db::clip_content(clip), unseen, clip.frames, mix_seed(seed, prompts.size(), 2)});
   }
   return prompts;
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

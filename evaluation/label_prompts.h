@@ -6,7 +6,7 @@
 
 #include "db/database.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// A content is rare below so many training clips (mirror twins not counted).
 inline constexpr int kRareClips = 20;
@@ -33,8 +33,8 @@ PromptDraw parse_prompt_draw(const std::string& name);
 /// clips come again, with another caption where they have one, when all were
 /// taken; `count` 0: every clip once. Mirror copies and clips without content or
 /// caption are left out. A function of the arguments alone. Throws Error when no clip is left.
-std::vector<LabelPrompt> choose_label_prompts(const std::vector<Clip>& clips,
+std::vector<LabelPrompt> choose_label_prompts(const std::vector<db::Clip>& clips,
                                               const std::string& split, int count, uint64_t seed,
                                               PromptDraw draw = PromptDraw::even);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -2,20 +2,23 @@
 
 #include <algorithm>
 
-#include "base/error.h"
 #include "base/random.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
 constexpr uint64_t kChanceStream = 2;
 
 /// The first moment of the query in the motion.
-MomentWindow first_moment(const Retriever& retriever, const Features& features,
-                          const at::Tensor& query, const MomentOptions& options) {
-  const std::vector<MomentWindow> windows = moment_windows(features.frames, options);
-  return best_moments(query, windows, encode_moments(retriever, features, windows), 1, options)
+search::MomentWindow first_moment(const retriever::Retriever& retriever,
+                                  const motion::Features& features, const at::Tensor& query,
+                                  const search::MomentOptions& options) {
+  const std::vector<search::MomentWindow> windows =
+      search::moment_windows(features.frames, options);
+  return search::best_moments(query, windows, search::encode_moments(retriever, features, windows),
+                              1, options)
       .at(0)
       .window;
 }
@@ -67,8 +70,10 @@ void to_json(nlohmann::json& json, const MomentEvaluation& evaluation) {
           {"chance", moment_json(evaluation.chance)}};
 }
 
-MomentEvaluation measure_moments(const Retriever& retriever, const std::vector<TrainingClip>& clips,
-                                 const MomentTaskOptions& tasks, const MomentOptions& options,
+MomentEvaluation measure_moments(const retriever::Retriever& retriever,
+                                 const std::vector<db::TrainingClip>& clips,
+                                 const MomentTaskOptions& tasks,
+                                 const search::MomentOptions& options,
                                  const BootstrapOptions& bootstrap, const Monitor& monitor) {
   const MomentTasks all(clips, retriever.feature_mode(), tasks);
   CounterRandom random(tasks.seed, mix_seed(tasks.seed, kChanceStream));
@@ -76,15 +81,17 @@ MomentEvaluation measure_moments(const Retriever& retriever, const std::vector<T
   for (size_t i = 0; i < all.size(); ++i) {
     if (monitor.stop_requested()) throw Interrupted("the evaluation of moments was stopped");
     const MomentTask task = all.task(i);
-    const MomentWindow& right = task.parts[task.asked];
+    const search::MomentWindow& right = task.parts[task.asked];
     const at::Tensor query = retriever.encode_text({task.sentence}).query[0];
-    found.push_back(temporal_iou(first_moment(retriever, task.features, query, options), right));
-    const Features& clip = clips[task.clips[task.asked]].features;
-    alone.push_back(temporal_iou(first_moment(retriever, clip, query, options), {0, clip.frames}));
+    found.push_back(
+        search::temporal_iou(first_moment(retriever, task.features, query, options), right));
+    const motion::Features& clip = clips[task.clips[task.asked]].features;
+    alone.push_back(
+        search::temporal_iou(first_moment(retriever, clip, query, options), {0, clip.frames}));
     const int length = std::max(1, task.features.frames / tasks.parts);
     const auto first =
         static_cast<int>(random.below(static_cast<size_t>(task.features.frames - length) + 1));
-    chance.push_back(temporal_iou({first, first + length}, right));
+    chance.push_back(search::temporal_iou({first, first + length}, right));
     monitor.report(
         {"evaluate moments", static_cast<double>(i + 1), static_cast<double>(all.size()), ""});
   }
@@ -96,4 +103,4 @@ MomentEvaluation measure_moments(const Retriever& retriever, const std::vector<T
           moment_figures(chance, bootstrap)};
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "base/progress.h"
+#include "evaluation/bootstrap.h"
 #include "evaluation/moment_tasks.h"
-#include "retriever/bootstrap.h"
-#include "retriever/moments.h"
+#include "remomask/progress.h"
+#include "search/moments.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// How well moments are found, in percent.
 struct MomentFigures {
@@ -25,7 +25,7 @@ MomentFigures moment_figures(const std::vector<double>& overlaps,
 
 struct MomentEvaluation {
   MomentTaskOptions tasks;
-  MomentOptions options;
+  search::MomentOptions options;
   BootstrapOptions bootstrap;
   MomentFigures found;   ///< in the joined motions
   MomentFigures alone;   ///< in the asked clip by itself, all of which is right
@@ -36,9 +36,11 @@ void to_json(nlohmann::json& json, const MomentEvaluation& evaluation);
 
 /// Answers each task with the first moment of its sentence. Throws Interrupted
 /// when stopped.
-MomentEvaluation measure_moments(const Retriever& retriever, const std::vector<TrainingClip>& clips,
-                                 const MomentTaskOptions& tasks, const MomentOptions& options = {},
+MomentEvaluation measure_moments(const retriever::Retriever& retriever,
+                                 const std::vector<db::TrainingClip>& clips,
+                                 const MomentTaskOptions& tasks,
+                                 const search::MomentOptions& options = {},
                                  const BootstrapOptions& bootstrap = {},
                                  const Monitor& monitor = {});
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

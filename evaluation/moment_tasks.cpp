@@ -2,11 +2,11 @@
 
 #include <set>
 
-#include "base/error.h"
 #include "base/random.h"
 #include "evaluation/joined_motion.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -14,7 +14,7 @@ constexpr uint64_t kTaskStream = 1;
 
 }  // namespace
 
-MomentTasks::MomentTasks(const std::vector<TrainingClip>& clips, FeatureMode mode,
+MomentTasks::MomentTasks(const std::vector<db::TrainingClip>& clips, motion::FeatureMode mode,
                          const MomentTaskOptions& options)
     : clips_(clips), mode_(mode), options_(options) {
   if (options.tasks < 1 || options.parts < 2) {
@@ -46,7 +46,7 @@ MomentTask MomentTasks::task(size_t i) const {
   std::vector<size_t> others;
   for (const size_t place : random.permutation(usable_.size())) {
     if (others.size() + 1 == static_cast<size_t>(options_.parts)) break;
-    const TrainingClip& clip = clips_[usable_[place]];
+    const db::TrainingClip& clip = clips_[usable_[place]];
     if (contents.contains(clip.content) || groups.contains(clip.group)) continue;
     contents.insert(clip.content);
     groups.insert(clip.group);
@@ -61,14 +61,14 @@ MomentTask MomentTasks::task(size_t i) const {
   std::vector<Motion> motions;
   int first = 0;
   for (const size_t clip : task.clips) {
-    motions.push_back(recover_motion(clips_[clip].features, humanml_skeleton()));
+    motions.push_back(motion::recover_motion(clips_[clip].features, humanml_skeleton()));
     task.parts.push_back({first, first + motions.back().frames});
     first += motions.back().frames;
   }
-  task.features = extract_features_all_frames(join_motions(motions, humanml_skeleton()),
-                                              humanml_skeleton(), mode_);
+  task.features = motion::extract_features_all_frames(join_motions(motions, humanml_skeleton()),
+                                                      humanml_skeleton(), mode_);
   task.sentence = clips_[asked_clip].captions.front();
   return task;
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -6,17 +6,17 @@
 
 #include "db/training_set.h"
 #include "motion/features.h"
-#include "retriever/moments.h"
+#include "search/moments.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// A long motion made of clips, and the sentence that tells one of them.
 struct MomentTask {
-  Features features;
-  std::vector<MomentWindow> parts;  ///< where each clip lies
-  std::vector<size_t> clips;        ///< that the parts are
-  size_t asked = 0;                 ///< the part that the sentence tells
-  std::string sentence;             ///< first caption of its clip
+  motion::Features features;
+  std::vector<search::MomentWindow> parts;  ///< where each clip lies
+  std::vector<size_t> clips;                ///< that the parts are
+  size_t asked = 0;                         ///< the part that the sentence tells
+  std::string sentence;                     ///< first caption of its clip
 };
 
 struct MomentTaskOptions {
@@ -30,7 +30,7 @@ class MomentTasks {
  public:
   /// Clips without caption or content are not drawn. Throws Error when there are
   /// fewer contents than parts.
-  MomentTasks(const std::vector<TrainingClip>& clips, FeatureMode mode,
+  MomentTasks(const std::vector<db::TrainingClip>& clips, motion::FeatureMode mode,
               const MomentTaskOptions& options);
 
   size_t size() const { return static_cast<size_t>(options_.tasks); }
@@ -41,10 +41,10 @@ class MomentTasks {
   MomentTask task(size_t i) const;
 
  private:
-  std::vector<TrainingClip> const& clips_;
-  FeatureMode mode_;
+  std::vector<db::TrainingClip> const& clips_;
+  motion::FeatureMode mode_;
   MomentTaskOptions options_;
   std::vector<size_t> usable_, order_;
 };
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

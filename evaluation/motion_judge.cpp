@@ -6,25 +6,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "db/training_set.h"
 #include "evaluation/evaluator_network.h"
-#include "generator/tokenizer_metrics.h"
+#include "evaluation/tokenizer_metrics.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
 class EvaluatorJudge : public MotionJudge {
  public:
-  EvaluatorJudge(const Evaluator& evaluator, const Database& database) : evaluator_(evaluator) {
-    TrainingSetOptions options;
+  EvaluatorJudge(const Evaluator& evaluator, const db::Database& database) : evaluator_(evaluator) {
+    db::TrainingSetOptions options;
     options.splits = {"train", "val", "test", "none"};
     options.add_mirrored = false;
     options.mode = evaluator.feature_mode();
     options.min_frames = static_cast<int>(kFramesPerMovement);
-    const auto clips = load_training_set(database, options);
-    for (const TrainingClip& clip : clips) clip_ids_.push_back(clip.clip_id);  // ascending
+    const auto clips = db::load_training_set(database, options);
+    for (const db::TrainingClip& clip : clips) clip_ids_.push_back(clip.clip_id);  // ascending
     vectors_ = evaluator.embed_motion(clip_features(clips));
   }
 
@@ -60,7 +60,7 @@ class EvaluatorJudge : public MotionJudge {
 
 class RetrieverJudge : public MotionJudge {
  public:
-  RetrieverJudge(const VectorIndex& index, EmbedMotion embed)
+  RetrieverJudge(const index::VectorIndex& index, EmbedMotion embed)
       : index_(index), embed_(std::move(embed)) {}
 
   std::string identity() const override { return "retriever " + index_.stamp().retriever_hash; }
@@ -83,18 +83,19 @@ class RetrieverJudge : public MotionJudge {
   }
 
  private:
-  const VectorIndex& index_;
+  const index::VectorIndex& index_;
   EmbedMotion embed_;
 };
 
 }  // namespace
 
-std::unique_ptr<MotionJudge> evaluator_judge(const Evaluator& evaluator, const Database& database) {
+std::unique_ptr<MotionJudge> evaluator_judge(const Evaluator& evaluator,
+                                             const db::Database& database) {
   return std::make_unique<EvaluatorJudge>(evaluator, database);
 }
 
-std::unique_ptr<MotionJudge> retriever_judge(const VectorIndex& index, EmbedMotion embed) {
+std::unique_ptr<MotionJudge> retriever_judge(const index::VectorIndex& index, EmbedMotion embed) {
   return std::make_unique<RetrieverJudge>(index, std::move(embed));
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -11,7 +11,7 @@
 #include "evaluation/evaluator.h"
 #include "index/vector_index.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// A real motion near another one.
 struct NearMotion {
@@ -39,10 +39,11 @@ using EmbedMotion = std::function<std::vector<float>(const Motion& motion)>;
 
 /// Judges in the evaluator's space, among all clips of a database that have at
 /// least four frames. `evaluator` must outlive it.
-std::unique_ptr<MotionJudge> evaluator_judge(const Evaluator& evaluator, const Database& database);
+std::unique_ptr<MotionJudge> evaluator_judge(const Evaluator& evaluator,
+                                             const db::Database& database);
 
 /// Judges in the retriever's space; `embed` must fit the vectors of `index`, which
 /// must outlive it.
-std::unique_ptr<MotionJudge> retriever_judge(const VectorIndex& index, EmbedMotion embed);
+std::unique_ptr<MotionJudge> retriever_judge(const index::VectorIndex& index, EmbedMotion embed);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -3,40 +3,42 @@
 #include <algorithm>
 
 #include "evaluation/generation_metrics.h"
-#include "generator/tokenizer_network.h"
+#include "tokenizer/tokenizer_network.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
 at::Tensor embed_through_positions(const Evaluator& evaluator, const Skeleton& skeleton,
-                                   const std::vector<Features>& clips) {
-  std::vector<Features> features;
-  std::vector<const Features*> pointers;
-  for (const Features& clip : clips) {
-    features.push_back(extract_features(recover_motion_with_next_frame(clip, skeleton), skeleton,
-                                        evaluator.feature_mode()));
+                                   const std::vector<motion::Features>& clips) {
+  std::vector<motion::Features> features;
+  std::vector<const motion::Features*> pointers;
+  for (const motion::Features& clip : clips) {
+    features.push_back(
+        motion::extract_features(motion::recover_motion_with_next_frame(clip, skeleton), skeleton,
+                                 evaluator.feature_mode()));
   }
-  for (const Features& one : features) pointers.push_back(&one);
+  for (const motion::Features& one : features) pointers.push_back(&one);
   return evaluator.embed_motion(pointers);
 }
 
 }  // namespace
 
-ReconstructionFid measure_reconstruction_fid(const Evaluator& evaluator, const Tokenizer& tokenizer,
-                                             const std::vector<const Features*>& clips) {
-  const Skeleton& skeleton = tokenizer_skeleton(tokenizer.config().skeleton);
-  std::vector<Features> original;
-  for (const Features* clip : clips) {
-    const int frames = clip->frames - clip->frames % static_cast<int>(kFramesPerToken);
+ReconstructionFid measure_reconstruction_fid(const Evaluator& evaluator,
+                                             const tokenizer::Tokenizer& tokenizer,
+                                             const std::vector<const motion::Features*>& clips) {
+  const Skeleton& skeleton = skeleton_named(tokenizer.config().skeleton);
+  std::vector<motion::Features> original;
+  for (const motion::Features* clip : clips) {
+    const int frames = clip->frames - clip->frames % static_cast<int>(tokenizer::kFramesPerToken);
     if (frames == 0) continue;
-    Features cut(frames, clip->dim);
+    motion::Features cut(frames, clip->dim);
     std::copy_n(clip->values.begin(), cut.values.size(), cut.values.begin());
     original.push_back(std::move(cut));
   }
-  std::vector<const Features*> pointers;
-  for (const Features& clip : original) pointers.push_back(&clip);
-  std::vector<Features> all_levels, base_level;
+  std::vector<const motion::Features*> pointers;
+  for (const motion::Features& clip : original) pointers.push_back(&clip);
+  std::vector<motion::Features> all_levels, base_level;
   for (const at::Tensor& tokens : tokenizer.encode(pointers)) {
     all_levels.push_back(tokenizer.decode(tokens));
     base_level.push_back(tokenizer.decode(tokens.narrow(2, 0, 1)));
@@ -46,4 +48,4 @@ ReconstructionFid measure_reconstruction_fid(const Evaluator& evaluator, const T
           frechet_distance(real, embed_through_positions(evaluator, skeleton, base_level))};
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

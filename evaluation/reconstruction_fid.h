@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "evaluation/evaluator.h"
-#include "generator/tokenizer.h"
+#include "tokenizer/tokenizer.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// Frechet distance of reconstructed motions to the original ones.
 struct ReconstructionFid {
@@ -18,7 +18,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReconstructionFid, all_levels, base_level)
 /// length, a multiple of 4; shorter ones than 4 frames are left out. Both sides
 /// go through joint positions, so that the evaluator reads what a viewer sees.
 /// Throws Error for fewer than two clips.
-ReconstructionFid measure_reconstruction_fid(const Evaluator& evaluator, const Tokenizer& tokenizer,
-                                             const std::vector<const Features*>& clips);
+ReconstructionFid measure_reconstruction_fid(const Evaluator& evaluator,
+                                             const tokenizer::Tokenizer& tokenizer,
+                                             const std::vector<const motion::Features*>& clips);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

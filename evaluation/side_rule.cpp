@@ -1,17 +1,18 @@
 #include "evaluation/side_rule.h"
+#include "motion/vector.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 
-#include "base/error.h"
 #include "evaluation/word_classes.h"
 #include "motion/heading.h"
+#include "remomask/error.h"
 #include "text/caption.h"
 #include "text/wordpiece.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -38,7 +39,7 @@ double wrist_path(const Motion& motion, const Skeleton& skeleton, const std::str
   const int wrist = joint_named(skeleton, side + "_wrist");
   const int shoulder = joint_named(skeleton, side + "_shoulder");
   const auto offset = [&](int frame) -> Vec3 {
-    return motion.position(frame, wrist) - motion.position(frame, shoulder);
+    return joint_position(motion, frame, wrist) - joint_position(motion, frame, shoulder);
   };
   double path = 0;
   for (int frame = 0; frame + 1 < motion.frames; ++frame) {
@@ -51,7 +52,7 @@ double wrist_path(const Motion& motion, const Skeleton& skeleton, const std::str
 double heading_change(const Motion& motion, const Skeleton& skeleton) {
   double change = 0, before = 0;
   for (int frame = 0; frame < motion.frames; ++frame) {
-    const Vec3 across = across_body(motion, frame, skeleton);
+    const Vec3 across = motion::across_body(motion, frame, skeleton);
     // Only differences count: which way `across` points does not matter.
     const double angle = std::atan2(-across.z(), across.x());
     if (frame > 0) change += std::remainder(angle - before, 2 * std::numbers::pi);
@@ -68,7 +69,7 @@ std::optional<AskedSide> asked_side(const std::string& caption) {
   static const std::set<std::string> legs = {"foot", "feet", "leg", "knee"};
   static const std::set<std::string> turns = {"turn",   "corner", "circle",
                                               "rotate", "spin",   "pivot"};
-  const auto words = split_words(normalise_caption(caption));
+  const auto words = text::split_words(text::normalise_caption(caption));
   bool left = false, right = false, turning = false, hand = false, other = false;
   for (size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
@@ -121,9 +122,9 @@ std::string shown_side_name(const std::string& caption, const Motion& motion,
   return shown ? side_name(*shown) : "";
 }
 
-SideCounts count_real_sides(const Database& database, const std::string& split) {
+SideCounts count_real_sides(const db::Database& database, const std::string& split) {
   SideCounts counts;
-  for (const Clip& clip : database.clips()) {
+  for (const db::Clip& clip : database.clips()) {
     if (clip.split != split || clip.skeleton != humanml_skeleton().name) continue;
     const auto caption =
         std::find_if(clip.captions.begin(), clip.captions.end(),
@@ -135,4 +136,4 @@ SideCounts count_real_sides(const Database& database, const std::string& split) 
   return counts;
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

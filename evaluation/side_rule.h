@@ -5,9 +5,9 @@
 #include <string>
 
 #include "db/database.h"
-#include "motion/motion.h"
+#include "remomask/motion.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 enum class Side { left, right };
 enum class SideKind { hand, turn };
@@ -53,6 +53,6 @@ std::string shown_side_name(const std::string& caption, const Motion& motion,
 
 /// The rule on the real clips of a split, each with its first caption that asks
 /// for a side: how far the rule (and the captions) can be trusted.
-SideCounts count_real_sides(const Database& database, const std::string& split);
+SideCounts count_real_sides(const db::Database& database, const std::string& split);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -2,10 +2,10 @@
 
 #include <array>
 
-#include "base/error.h"
 #include "evaluation/evaluator_config.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -15,14 +15,14 @@ constexpr std::array<std::array<const char*, 2>, 3> kRenamed = {
 
 }  // namespace
 
-bool is_t2m_evaluator(const TensorFile& file) {
+bool is_t2m_evaluator(const nn::TensorFile& file) {
   return file.metadata.count("format") == 0 &&
          file.tensors.count("movement_encoder.main.0.weight") > 0;
 }
 
-ModelStage import_t2m_evaluator(const TensorFile& file, const std::string& path) {
+nn::ModelStage import_t2m_evaluator(const nn::TensorFile& file, const std::string& path) {
   EvaluatorConfig config = evaluator_preset("paper");
-  config.mode = FeatureMode::official;
+  config.mode = motion::FeatureMode::official;
   const auto words = file.metadata.find("vocabulary");
   if (words == file.metadata.end()) {
     throw FileError(path, 0, "lacks the word list \"vocabulary\" in its metadata");
@@ -32,7 +32,7 @@ ModelStage import_t2m_evaluator(const TensorFile& file, const std::string& path)
   } catch (const nlohmann::json::exception&) {
     throw FileError(path, 0, "\"vocabulary\" in its metadata is no JSON list of words");
   }
-  ModelStage stage;
+  nn::ModelStage stage;
   stage.kind = "evaluator";
   stage.tensors = file.tensors;
   for (const auto& [name, own] : kRenamed) {
@@ -49,4 +49,4 @@ ModelStage import_t2m_evaluator(const TensorFile& file, const std::string& path)
   return stage;
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

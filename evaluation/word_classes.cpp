@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <unordered_map>
 
-namespace remomask {
+namespace remomask::evaluation {
 
 namespace {
 
@@ -90,4 +90,4 @@ WordClass word_class(const std::string& word) {
   return found != function_words.end() ? found->second : WordClass::other;
 }
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace remomask {
+namespace remomask::evaluation {
 
 /// Classes of words as the text-motion evaluator of Guo et al. (CVPR 2022) has
 /// them: nine parts of speech, five lists of words that matter for motion, the
@@ -38,4 +38,4 @@ WordClass word_class(const std::string& word);
 /// "wav", "wave"; irregular forms of the listed verbs too. May hold non-words.
 std::vector<std::string> base_forms(const std::string& word);
 
-}  // namespace remomask
+}  // namespace remomask::evaluation

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "generator/pipeline.h"
-#include "index/motion_search.h"
-#include "motion/motion_file.h"
+#include "formats/motion_file.h"
+#include "pipeline/motion_generator.h"
+#include "search/motion_search.h"
 
 int main(int argc, char** argv) {
   if (argc != 5) {
@@ -17,18 +17,18 @@ int main(int argc, char** argv) {
   }
   try {
     const std::string sentence = argv[3];
-    const remomask::Generator generator(remomask::load_model(argv[1]));
-    const remomask::MotionSearch search(argv[1], argv[2]);
-    const remomask::Database database(argv[2], remomask::OpenMode::read_only);
+    const remomask::pipeline::Generator generator(remomask::nn::load_model(argv[1]));
+    const remomask::search::MotionSearch search(argv[1], argv[2]);
+    const remomask::db::Database database(argv[2], remomask::db::OpenMode::read_only);
 
-    remomask::SearchQuery query;
+    remomask::search::SearchQuery query;
     query.text = sentence;
     query.k = static_cast<int>(generator.max_hits());
-    std::vector<remomask::RetrievedMotion> retrieved;
-    for (const remomask::MotionHit& hit : search.search(query).hits) {
+    std::vector<remomask::pipeline::RetrievedMotion> retrieved;
+    for (const remomask::search::MotionHit& hit : search.search(query).hits) {
       const auto vectors = database.embedding(generator.retriever().hash(), hit.clip.id);
       if (!vectors || vectors->text.empty()) continue;
-      remomask::RetrievedMotion motion;
+      remomask::pipeline::RetrievedMotion motion;
       motion.clip_id = hit.clip.id;
       motion.motion = vectors->motion;
       motion.text = vectors->text;
@@ -41,11 +41,11 @@ int main(int argc, char** argv) {
       std::printf("from: %s  %.3f\n", hit.clip.name.c_str(), hit.similarity);
     }
 
-    remomask::GenerateOptions options;
+    remomask::pipeline::GenerateOptions options;
     options.seconds = 2;
     options.seed = 1;
-    const remomask::Generated made = generator.generate(sentence, retrieved, options);
-    remomask::save_motion_file(argv[4], made.motion, {{"prompt", sentence}});
+    const remomask::pipeline::Generated made = generator.generate(sentence, retrieved, options);
+    remomask::formats::save_motion_file(argv[4], made.motion, {{"prompt", sentence}});
     std::printf("%d frames in %s\n", made.motion.frames, argv[4]);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

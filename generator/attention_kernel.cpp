@@ -9,7 +9,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define REMOMASK_INLINE inline __attribute__((always_inline))
 
-namespace remomask {
+namespace remomask::generator {
 
 namespace {
 
@@ -265,4 +265,4 @@ void attend_head_backward(const HeadShape& shape, ConstRows grad_out, ConstRows 
                                 grad_position, grad_key, scratch);
 }
 
-}  // namespace remomask
+}  // namespace remomask::generator

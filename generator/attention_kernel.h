@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace remomask {
+namespace remomask::generator {
 
 /// Sizes of one attention head of one sample, and how its rows lie in memory.
 struct HeadShape {
@@ -39,4 +39,4 @@ void attend_head_backward(const HeadShape& shape, ConstRows grad_out, ConstRows 
                           ConstRows v, const float* weights, Rows grad_q, Rows grad_k, Rows grad_v,
                           float* grad_position, float* grad_key, float* scratch);
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -7,7 +7,7 @@
 
 #include "generator/condition.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 /// What a stack makes of a condition before it sees any token, so that a
 /// generation computes it once. Each kind of stack says what it keeps here.
@@ -48,4 +48,4 @@ struct SstaConfig;
 /// another name and for sizes that do not fit.
 std::shared_ptr<AttentionStackImpl> make_attention_stack(const SstaConfig& config, int64_t layers);
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -10,7 +10,7 @@
 
 #include "generator/attention_kernel.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 namespace {
 
@@ -125,4 +125,4 @@ at::Tensor biased_attention(const at::Tensor& q, const at::Tensor& k, const at::
   return composed_attention(q, k, v, position, key);
 }
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -2,7 +2,7 @@
 
 #include <ATen/core/Tensor.h>
 
-namespace remomask {
+namespace remomask::generator {
 
 /// Softmax attention with two additive biases that are never expanded:
 ///   softmax(Q K^T / sqrt(d_h) + [position | 0] + key) V, per head.
@@ -13,4 +13,4 @@ namespace remomask {
 at::Tensor biased_attention(const at::Tensor& q, const at::Tensor& k, const at::Tensor& v,
                             const at::Tensor& position, const at::Tensor& key);
 
-}  // namespace remomask
+}  // namespace remomask::generator

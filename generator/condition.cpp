@@ -3,7 +3,7 @@
 #include <ATen/ops/cat.h>
 #include <c10/util/Exception.h>
 
-namespace remomask {
+namespace remomask::generator {
 
 namespace {
 
@@ -39,4 +39,4 @@ Condition concatenate_conditions(const Condition& first, const Condition& second
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -2,7 +2,7 @@
 
 #include <ATen/core/Tensor.h>
 
-namespace remomask {
+namespace remomask::generator {
 
 /// What steers the generator, for B samples. k may be 0 (no retrieval at all).
 struct Condition {
@@ -25,4 +25,4 @@ Condition select_condition(const Condition& condition, const at::Tensor& index);
 /// Conditions of two batches one after the other (same S, k).
 Condition concatenate_conditions(const Condition& first, const Condition& second);
 
-}  // namespace remomask
+}  // namespace remomask::generator

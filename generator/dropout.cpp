@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace remomask {
+namespace remomask::generator {
 
 at::Tensor counter_dropout(const at::Tensor& x, double rate, bool training) {
   if (!training || rate <= 0) return x;
@@ -34,4 +34,4 @@ at::Tensor counter_dropout(const at::Tensor& x, double rate, bool training) {
   return x * mask.to(x.options());
 }
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -2,7 +2,7 @@
 
 #include <ATen/core/Tensor.h>
 
-namespace remomask {
+namespace remomask::generator {
 
 /// Inverted dropout: zero with probability `rate` (a multiple of 1/65536), else
 /// scaled by 1 / (1 - rate). The mask comes from counters under one draw of
@@ -11,4 +11,4 @@ namespace remomask {
 /// `training` or when the rate is 0.
 at::Tensor counter_dropout(const at::Tensor& x, double rate, bool training);
 
-}  // namespace remomask
+}  // namespace remomask::generator

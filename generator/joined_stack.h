@@ -7,7 +7,7 @@
 #include "generator/ssta.h"
 #include "nn/layers.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 /// What SSTA is compared with (ReMoMask, ablation without SSTA; MoMask): the
 /// condition stands before the tokens as [t; R; z], and the whole sequence goes
@@ -35,9 +35,9 @@ class JoinedStackImpl : public AttentionStackImpl {
   ConditionEncoder condition_encoder_;
   torch::nn::Linear hit_{nullptr};
   torch::nn::Embedding kind_;
-  std::vector<EncoderBlock> blocks_;
+  std::vector<nn::EncoderBlock> blocks_;
   torch::nn::LayerNorm final_norm_;
 };
 TORCH_MODULE(JoinedStack);
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "nn/layers.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 namespace {
 
@@ -46,8 +46,8 @@ MaskedTransformerImpl::MaskedTransformerImpl(const MaskedConfig& chosen)
     hit_similarity_ = register_module("hit_similarity", torch::nn::Linear(1, config_.width));
     hit_norm_ = register_module("hit_norm",
                                 torch::nn::LayerNorm(torch::nn::LayerNormOptions({config_.width})));
-    initialise_transformer_weights(*hit_pair_);
-    initialise_transformer_weights(*hit_similarity_);
+    nn::initialise_transformer_weights(*hit_pair_);
+    nn::initialise_transformer_weights(*hit_similarity_);
   }
   torch::NoGradGuard no_grad;
   token_table_->weight.normal_(0, 0.02);
@@ -111,18 +111,18 @@ MaskedConfig masked_config(nlohmann::json stage_config) {
   return stage_config.get<MaskedConfig>();
 }
 
-ModelStage masked_stage(const MaskedTransformer& model) {
-  return {"masked", nlohmann::json(model->config()), module_tensors(*model)};
+nn::ModelStage masked_stage(const MaskedTransformer& model) {
+  return {"masked", nlohmann::json(model->config()), nn::module_tensors(*model)};
 }
 
-MaskedTransformer load_masked(const ModelStage& stage) {
+MaskedTransformer load_masked(const nn::ModelStage& stage) {
   if (stage.kind != "masked") {
     throw Error("this stage is a " + stage.kind + ", not a masked transformer");
   }
   MaskedTransformer model(masked_config(stage.config));
-  load_module_tensors(*model, stage.tensors, "masked transformer");
+  nn::load_module_tensors(*model, stage.tensors, "masked transformer");
   model->eval();
   return model;
 }
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -13,7 +13,7 @@
 #include "generator/ssta.h"
 #include "nn/model_file.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 /// Sizes of the masked transformer.
 struct MaskedConfig {
@@ -74,8 +74,8 @@ TORCH_MODULE(MaskedTransformer);
 MaskedConfig masked_config(nlohmann::json stage_config);
 
 /// Model <-> stage of a model file (kind "masked").
-ModelStage masked_stage(const MaskedTransformer& model);
+nn::ModelStage masked_stage(const MaskedTransformer& model);
 /// Throws Error for another kind or tensors that do not fit. In eval mode.
-MaskedTransformer load_masked(const ModelStage& stage);
+MaskedTransformer load_masked(const nn::ModelStage& stage);
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 namespace {
 
@@ -74,18 +74,18 @@ ResidualConfig residual_config(nlohmann::json stage_config) {
   return stage_config.get<ResidualConfig>();
 }
 
-ModelStage residual_stage(const ResidualTransformer& model) {
-  return {"residual", nlohmann::json(model->config()), module_tensors(*model)};
+nn::ModelStage residual_stage(const ResidualTransformer& model) {
+  return {"residual", nlohmann::json(model->config()), nn::module_tensors(*model)};
 }
 
-ResidualTransformer load_residual(const ModelStage& stage) {
+ResidualTransformer load_residual(const nn::ModelStage& stage) {
   if (stage.kind != "residual") {
     throw Error("this stage is a " + stage.kind + ", not a residual transformer");
   }
   ResidualTransformer model(residual_config(stage.config));
-  load_module_tensors(*model, stage.tensors, "residual transformer");
+  nn::load_module_tensors(*model, stage.tensors, "residual transformer");
   model->eval();
   return model;
 }
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -11,7 +11,7 @@
 #include "generator/ssta.h"
 #include "nn/model_file.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 /// Sizes of the residual transformer.
 struct ResidualConfig {
@@ -62,7 +62,7 @@ TORCH_MODULE(ResidualTransformer);
 ResidualConfig residual_config(nlohmann::json stage_config);
 
 /// Model <-> stage of a model file (kind "residual").
-ModelStage residual_stage(const ResidualTransformer& model);
-ResidualTransformer load_residual(const ModelStage& stage);
+nn::ModelStage residual_stage(const ResidualTransformer& model);
+ResidualTransformer load_residual(const nn::ModelStage& stage);
 
-}  // namespace remomask
+}  // namespace remomask::generator

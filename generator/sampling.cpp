@@ -8,9 +8,9 @@
 #include <numbers>
 #include <numeric>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 namespace {
 
@@ -218,4 +218,4 @@ at::Tensor sample_residual(ResidualTransformer model, const Condition& condition
   return tokens;
 }
 
-}  // namespace remomask
+}  // namespace remomask::generator

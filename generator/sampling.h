@@ -8,7 +8,7 @@
 #include "generator/masked_transformer.h"
 #include "generator/residual_transformer.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 struct SamplingOptions {
   int steps = 10;             ///< passes of the masked transformer
@@ -54,4 +54,4 @@ at::Tensor sample_residual(ResidualTransformer model, const Condition& condition
 int64_t sample_code(const float* logits, int64_t count, int64_t kept, double temperature,
                     const CounterRandom& random, uint64_t first_counter);
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -6,21 +6,21 @@
 
 #include <cmath>
 
-#include "base/error.h"
 #include "generator/biased_attention.h"
 #include "generator/dropout.h"
 #include "nn/layers.h"
+#include "remomask/error.h"
 
-namespace remomask {
-
-namespace nn = torch::nn;
+namespace remomask::generator {
 
 namespace {
 
 // Far below any real logit, yet finite: softmax gives exactly 0 and gradients stay finite.
 constexpr double kHiddenKey = -1e4;
 
-nn::LayerNorm layer_norm(int64_t width) { return nn::LayerNorm(nn::LayerNormOptions({width})); }
+torch::nn::LayerNorm layer_norm(int64_t width) {
+  return torch::nn::LayerNorm(torch::nn::LayerNormOptions({width}));
+}
 
 }  // namespace
 
@@ -42,8 +42,10 @@ void check_attention_sizes(const SstaConfig& config) {
 
 ConditionEncoderImpl::ConditionEncoderImpl(const SstaConfig& config)
     : config_(config),
-      text_state_(register_module("text_state", nn::Linear(config.text_width, config.width))),
-      text_query_(register_module("text_query", nn::Linear(config.embedding_width, config.width))),
+      text_state_(
+          register_module("text_state", torch::nn::Linear(config.text_width, config.width))),
+      text_query_(
+          register_module("text_query", torch::nn::Linear(config.embedding_width, config.width))),
       text_norm_(register_module("text_norm", layer_norm(config.width))),
       null_text_(register_parameter("null_text", torch::randn({config.width}) * 0.5)) {
   if (!config.retrieval) return;
@@ -110,27 +112,32 @@ at::Tensor relative_position_index(int64_t frames, int64_t rows) {
 SstaImpl::SstaImpl(const SstaConfig& config)
     : config_(config),
       query_key_value_(
-          register_module("query_key_value", nn::Linear(config.width, 3 * config.width))),
+          register_module("query_key_value", torch::nn::Linear(config.width, 3 * config.width))),
       text_key_value_(
-          register_module("text_key_value", nn::Linear(config.width, 2 * config.width))),
-      output_(register_module("output", nn::Linear(config.width, config.width))),
+          register_module("text_key_value", torch::nn::Linear(config.width, 2 * config.width))),
+      output_(register_module("output", torch::nn::Linear(config.width, config.width))),
       position_bias_(register_module(
           "position_bias",
-          nn::Embedding((2 * kLongestTokenMap - 1) * config.rows * config.rows, config.heads))),
-      kind_bias_(
-          register_module("kind_bias", nn::Embedding(condition_kinds(config), config.heads))) {
+          torch::nn::Embedding((2 * kLongestTokenMap - 1) * config.rows * config.rows,
+                               config.heads))),
+      kind_bias_(register_module("kind_bias",
+                                 torch::nn::Embedding(condition_kinds(config), config.heads))) {
   if (config.hit_states) {
-    hit_state_key_ = register_module("hit_state_key", nn::Linear(config.width, config.width));
-    hit_state_value_ = register_module("hit_state_value", nn::Linear(config.width, config.width));
+    hit_state_key_ =
+        register_module("hit_state_key", torch::nn::Linear(config.width, config.width));
+    hit_state_value_ =
+        register_module("hit_state_value", torch::nn::Linear(config.width, config.width));
   }
   if (!config.retrieval) return;
-  hit_key_ = register_module("hit_key", nn::Linear(2 * config.embedding_width + 1, config.width));
-  hit_value_ = register_module("hit_value", nn::Linear(config.embedding_width, config.width));
+  hit_key_ =
+      register_module("hit_key", torch::nn::Linear(2 * config.embedding_width + 1, config.width));
+  hit_value_ =
+      register_module("hit_value", torch::nn::Linear(config.embedding_width, config.width));
 }
 
 void SstaImpl::reset_retrieval_values() {
   at::NoGradGuard no_grad;
-  for (nn::Linear* values : {&hit_value_, &hit_state_value_}) {
+  for (torch::nn::Linear* values : {&hit_value_, &hit_state_value_}) {
     if (values->is_empty()) continue;
     (*values)->weight.zero_();
     (*values)->bias.zero_();
@@ -177,8 +184,8 @@ SstaBlockImpl::SstaBlockImpl(const SstaConfig& config)
       attention_norm_(register_module("attention_norm", layer_norm(config.width))),
       feed_forward_norm_(register_module("feed_forward_norm", layer_norm(config.width))),
       attention_(register_module("attention", Ssta(config))),
-      expand_(register_module("expand", nn::Linear(config.width, config.hidden))),
-      contract_(register_module("contract", nn::Linear(config.hidden, config.width))) {}
+      expand_(register_module("expand", torch::nn::Linear(config.width, config.hidden))),
+      contract_(register_module("contract", torch::nn::Linear(config.hidden, config.width))) {}
 
 at::Tensor SstaBlockImpl::forward(const at::Tensor& x, const ConditionCache& condition,
                                   const at::Tensor& position_index, const at::Tensor& token_mask) {
@@ -199,7 +206,7 @@ SstaStackImpl::SstaStackImpl(const SstaConfig& config, int64_t layers)
 }
 
 void SstaStackImpl::initialise() {
-  initialise_transformer_weights(*this);
+  nn::initialise_transformer_weights(*this);
   for (auto& block : blocks_) block->attention()->reset_retrieval_values();
 }
 
@@ -228,11 +235,11 @@ at::Tensor SstaStackImpl::forward(at::Tensor x, const std::vector<ConditionCache
 }
 
 at::Tensor map_positions(int64_t frames, int64_t rows, int64_t width) {
-  const auto row = sinusoidal_positions(rows, width / 2).unsqueeze(0);
-  const auto time = sinusoidal_positions(frames, width / 2).unsqueeze(1);
+  const auto row = nn::sinusoidal_positions(rows, width / 2).unsqueeze(0);
+  const auto time = nn::sinusoidal_positions(frames, width / 2).unsqueeze(1);
   return torch::cat({row.expand({frames, rows, width / 2}), time.expand({frames, rows, width / 2})},
                     2)
       .reshape({frames * rows, width});
 }
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -8,7 +8,7 @@
 #include "generator/attention_stack.h"
 #include "generator/condition.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 /// Sizes of one attention stack.
 struct SstaConfig {
@@ -142,4 +142,4 @@ TORCH_MODULE(SstaStack);
 /// holds the sinusoid of the row, the second half that of time.
 at::Tensor map_positions(int64_t frames, int64_t rows, int64_t width);
 
-}  // namespace remomask
+}  // namespace remomask::generator

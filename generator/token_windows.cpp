@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <string>
 
-#include "base/error.h"
 #include "generator/ssta.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::generator {
 
 std::vector<TokenWindow> plan_windows(const at::Tensor& known, int64_t first, int64_t last) {
   const int64_t frames = known.size(0);
@@ -34,4 +34,4 @@ std::vector<TokenWindow> plan_windows(const at::Tensor& known, int64_t first, in
   return windows;
 }
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace remomask {
+namespace remomask::generator {
 
 /// Token frames [first, last) that the transformers see at once, at most
 /// kLongestTokenMap.
@@ -25,4 +25,4 @@ constexpr int64_t kContextTokens = 8;
 /// also the known frames behind. Throws Error for frames outside of the map.
 std::vector<TokenWindow> plan_windows(const at::Tensor& known, int64_t first, int64_t last);
 
-}  // namespace remomask
+}  // namespace remomask::generator

@@ -9,10 +9,10 @@
 #include <cerrno>
 #include <cstring>
 
-#include "base/error.h"
 #include "base/hash.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
@@ -80,4 +80,4 @@ DescribedContent split_described(const std::string& path, std::string_view conte
   throw FileError(path, 0, "the index is damaged; " + remedy);
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

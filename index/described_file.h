@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace remomask {
+namespace remomask::index {
 
 /// The content of a file, mapped: nothing is read before it is used. The file
 /// must only ever be replaced by renaming, as base/file.h does it.
@@ -43,4 +43,4 @@ std::string describe(nlohmann::json description, std::string_view magic);
 DescribedContent split_described(const std::string& path, std::string_view content,
                                  std::string_view magic, const std::string& remedy);
 
-}  // namespace remomask
+}  // namespace remomask::index

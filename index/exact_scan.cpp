@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
@@ -170,4 +170,4 @@ void require_unit_length(const float* vector, int width, const std::string& subj
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace remomask {
+namespace remomask::index {
 
 struct RowScore {
   int64_t row = 0;
@@ -29,4 +29,4 @@ std::vector<std::vector<RowScore>> exact_top_k(const float* vectors, int64_t cou
 /// Throws Error that begins with `subject` when the L2 norm is not 1 within 0.001.
 void require_unit_length(const float* vector, int width, const std::string& subject);
 
-}  // namespace remomask
+}  // namespace remomask::index

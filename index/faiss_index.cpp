@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
@@ -73,4 +73,4 @@ std::unique_ptr<faiss::IndexIDMap2> build_faiss_index(const std::vector<int64_t>
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

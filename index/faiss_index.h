@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
 #include "index/vector_index.h"
+#include "remomask/progress.h"
 
-namespace remomask {
+namespace remomask::index {
 
 /// The type that "auto" means for this many vectors: "Flat" below 500,000, else
 /// "IVF<n>,Flat" with n the power of two nearest to 2 sqrt(count), from 1,024
@@ -23,4 +23,4 @@ std::unique_ptr<faiss::IndexIDMap2> build_faiss_index(const std::vector<int64_t>
                                                       const IndexType& type,
                                                       const Monitor& monitor);
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <iterator>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "index/described_file.h"
 #include "index/exact_scan.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
@@ -65,15 +65,15 @@ Ids merged_ids(const Ids& left, const Ids& right) {
 }
 
 /// Among others, those whose vectors came or went since the stamp.
-EmbeddingChanges changed_clips(const Database& database, const IndexStamp& stamp,
-                               const Ids& former) {
+db::EmbeddingChanges changed_clips(const db::Database& database, const IndexStamp& stamp,
+                                   const Ids& former) {
   auto logged = database.embedding_changes(stamp.retriever_hash, stamp.generation);
   if (logged) return std::move(*logged);
   const Ids now = database.embedded_clips(stamp.retriever_hash);
   return {ids_without(now, former), ids_without(former, now)};
 }
 
-std::vector<float> new_vectors(const Database& database, const std::string& retriever_hash,
+std::vector<float> new_vectors(const db::Database& database, const std::string& retriever_hash,
                                const Ids& ids, int width) {
   std::vector<float> vectors = database.motion_vectors(retriever_hash, ids, width);
   for (size_t i = 0; i < ids.size(); ++i) {
@@ -97,11 +97,11 @@ void take_values(std::string_view& body, size_t count, std::vector<Value>& value
 
 }  // namespace
 
-std::vector<float> motion_vectors(const Database& database,
-                                  const std::vector<ClipEmbedding>& embeddings, int width) {
+std::vector<float> motion_vectors(const db::Database& database,
+                                  const std::vector<db::ClipEmbedding>& embeddings, int width) {
   std::vector<float> vectors;
   vectors.reserve(embeddings.size() * static_cast<size_t>(width));
-  for (const ClipEmbedding& embedding : embeddings) {
+  for (const db::ClipEmbedding& embedding : embeddings) {
     const auto& motion = embedding.motion;
     if (motion.size() != static_cast<size_t>(width) || width == 0) {
       throw Error(
@@ -116,13 +116,13 @@ std::vector<float> motion_vectors(const Database& database,
   return vectors;
 }
 
-IndexStamp present_stamp(const Database& database, const std::string& retriever_hash) {
+IndexStamp present_stamp(const db::Database& database, const std::string& retriever_hash) {
   const int64_t generation = database.generation();
   return {database.uuid(), generation, retriever_hash, database.writer_of(generation)};
 }
 
-void require_same_origin(const std::string& path, const IndexStamp& stamp, const Database& database,
-                         const std::string& retriever_hash) {
+void require_same_origin(const std::string& path, const IndexStamp& stamp,
+                         const db::Database& database, const std::string& retriever_hash) {
   if (stamp.retriever_hash != retriever_hash) {
     throw Error(path + ": this index was built with another retriever (" + stamp.retriever_hash +
                 " instead of " + retriever_hash + "); run: remomask index DB");
@@ -133,10 +133,10 @@ void require_same_origin(const std::string& path, const IndexStamp& stamp, const
   }
   // The caller's snapshot may be older than a file that was just written: what
   // counts is the latest state.
-  std::optional<Database> latest;
+  std::optional<db::Database> latest;
   if (stamp.generation > database.generation())
-    latest.emplace(database.path(), OpenMode::read_only);
-  const Database& reached = latest ? *latest : database;
+    latest.emplace(database.path(), db::OpenMode::read_only);
+  const db::Database& reached = latest ? *latest : database;
   if (stamp.generation > reached.generation()) {
     throw Error(path + ": this index is of a later state than " + database.path() +
                 " (is that an older copy?); run: remomask index DB");
@@ -147,7 +147,7 @@ void require_same_origin(const std::string& path, const IndexStamp& stamp, const
   }
 }
 
-FollowedState follow_database(const Database& database, const Ids& base_ids, int width,
+FollowedState follow_database(const db::Database& database, const Ids& base_ids, int width,
                               IndexStamp& stamp, IndexChanges& changes) {
   FollowedState result;
   Ids former = merged_ids(ids_without(base_ids, changes.dropped), changes.added);
@@ -156,7 +156,7 @@ FollowedState follow_database(const Database& database, const Ids& base_ids, int
     result.ids = std::move(former);
     return result;
   }
-  const EmbeddingChanges changed = changed_clips(database, stamp, former);
+  const db::EmbeddingChanges changed = changed_clips(database, stamp, former);
   const Ids came = ids_without(changed.present, former);
   const Ids went = common_ids(changed.absent, former);
   const Ids missing = ids_without(came, base_ids);
@@ -236,4 +236,4 @@ std::optional<IndexDelta> read_index_delta(const std::string& path, const IndexH
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -9,7 +9,7 @@
 #include "index/index_file.h"
 #include "index/vector_index.h"
 
-namespace remomask {
+namespace remomask::index {
 
 /// What the present state has more and less than the base, the index as it was
 /// built. For one retriever the vector of a clip id never changes, so the ids
@@ -24,16 +24,16 @@ struct IndexChanges {
 
 /// Motion vectors of database rows, one after the other. Throws Error when one
 /// has another width or is not L2-normalised.
-std::vector<float> motion_vectors(const Database& database,
-                                  const std::vector<ClipEmbedding>& embeddings, int width);
+std::vector<float> motion_vectors(const db::Database& database,
+                                  const std::vector<db::ClipEmbedding>& embeddings, int width);
 
-IndexStamp present_stamp(const Database& database, const std::string& retriever_hash);
+IndexStamp present_stamp(const db::Database& database, const std::string& retriever_hash);
 
 /// Throws Error when the index at `path` with this stamp is of another database
 /// or retriever, of a state that this database has not reached, or of a copy of
 /// it that was changed apart.
-void require_same_origin(const std::string& path, const IndexStamp& stamp, const Database& database,
-                         const std::string& retriever_hash);
+void require_same_origin(const std::string& path, const IndexStamp& stamp,
+                         const db::Database& database, const std::string& retriever_hash);
 
 /// Brings `changes` and `stamp` to the database's present state, which the
 /// caller holds by a ReadSnapshot. Reads what has changed only, where the database
@@ -43,7 +43,7 @@ struct FollowedState {
   std::vector<int64_t> ids;
   IndexDifference difference;
 };
-FollowedState follow_database(const Database& database, const std::vector<int64_t>& base_ids,
+FollowedState follow_database(const db::Database& database, const std::vector<int64_t>& base_ids,
                               int width, IndexStamp& stamp, IndexChanges& changes);
 
 /// Whether so many changes are better built into a new base: more than 10 % of
@@ -68,4 +68,4 @@ void write_index_delta(const std::string& path, const IndexHeader& base, const I
 /// Throws FileError when it is cut off or damaged.
 std::optional<IndexDelta> read_index_delta(const std::string& path, const IndexHeader& base);
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -9,12 +9,12 @@
 #include <fstream>
 #include <string_view>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "index/described_file.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
@@ -211,4 +211,4 @@ IndexHeader read_index_header(const std::string& path) {
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -9,7 +9,7 @@
 
 #include "index/vector_index.h"
 
-namespace remomask {
+namespace remomask::index {
 
 /// What an index file says about itself.
 struct IndexHeader {
@@ -41,4 +41,4 @@ IndexFile read_index_file(const std::string& path);
 /// milliseconds for any size.
 IndexHeader read_index_header(const std::string& path);
 
-}  // namespace remomask
+}  // namespace remomask::index

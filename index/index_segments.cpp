@@ -5,7 +5,7 @@
 
 #include "index/exact_scan.h"
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
@@ -155,4 +155,4 @@ HitLists IndexSegments::search_approximately(const float* queries, int64_t query
   return merge_hits(hits, scan_added(queries, query_count, k, nullptr), k);
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -10,7 +10,7 @@
 #include "index/index_changes.h"
 #include "index/vector_index.h"
 
-namespace remomask {
+namespace remomask::index {
 
 /// What a VectorIndex searches: the base, less its dropped rows, and the added
 /// vectors. These are always scanned exactly, so every type of base follows a
@@ -59,4 +59,4 @@ class IndexSegments {
   std::vector<int64_t> ids_;
 };
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::string tune_probes(IndexSegments& segments, const RecallSample& sample) {
   return "nprobe=" + std::to_string(lists->nprobe);
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

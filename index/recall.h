@@ -5,7 +5,7 @@
 
 #include "index/index_segments.h"
 
-namespace remomask {
+namespace remomask::index {
 
 /// Stored vectors as queries, with their true ten nearest among the others.
 class RecallSample {
@@ -26,4 +26,4 @@ class RecallSample {
 /// with a recall of 0.97, and returns it as a search parameter; "" for other types.
 std::string tune_probes(IndexSegments& segments, const RecallSample& sample);
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <utility>
 
-#include "base/error.h"
 #include "index/faiss_index.h"
 #include "index/index_changes.h"
 #include "index/index_file.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
@@ -21,7 +21,7 @@ struct IndexPair {
 /// The pair, or why it cannot be continued. A damaged delta alone costs nothing:
 /// the base without it is an older state.
 std::pair<std::optional<IndexPair>, std::string> read_pair(const std::string& path,
-                                                           const Database& database,
+                                                           const db::Database& database,
                                                            const std::string& retriever_hash) {
   if (!std::filesystem::exists(path)) return {std::nullopt, "there was none"};
   try {
@@ -49,12 +49,12 @@ bool same_type(const IndexType& type, const VectorIndexOptions& options) {
 
 }  // namespace
 
-IndexUpdate update_index(const std::string& path, const Database& database,
+IndexUpdate update_index(const std::string& path, const db::Database& database,
                          const std::string& retriever_hash, const UpdateOptions& options,
                          const Monitor& monitor) {
   // Before the snapshot: what is written must not be older than what was there.
   auto [pair, reason] = read_pair(path, database, retriever_hash);
-  const ReadSnapshot snapshot(database);
+  const db::ReadSnapshot snapshot(database);
   VectorIndexOptions type = options.type.value_or(VectorIndexOptions{});
   IndexDifference difference;
   if (pair) {
@@ -86,4 +86,4 @@ IndexUpdate update_index(const std::string& path, const Database& database,
   return {index.type(), index.count(), index.width(), difference, reason};
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -5,7 +5,7 @@
 
 #include "index/vector_index.h"
 
-namespace remomask {
+namespace remomask::index {
 
 struct UpdateOptions {
   /// Nothing: the type that the file has, "auto" for a new one.
@@ -27,8 +27,8 @@ struct IndexUpdate {
 /// to be built anew, because it is missing, damaged, of another database,
 /// retriever or type, or because the changes have become too many. Throws as
 /// VectorIndex::build().
-IndexUpdate update_index(const std::string& path, const Database& database,
+IndexUpdate update_index(const std::string& path, const db::Database& database,
                          const std::string& retriever_hash, const UpdateOptions& options = {},
                          const Monitor& monitor = {});
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/error.h"
 #include "index/exact_scan.h"
 #include "index/faiss_index.h"
 #include "index/index_changes.h"
 #include "index/index_file.h"
 #include "index/index_segments.h"
 #include "index/recall.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
@@ -109,29 +109,29 @@ VectorIndex::VectorIndex(IndexStamp stamp, const std::vector<int64_t>& ids,
   impl_ = Impl::build(std::move(stamp), sorted_ids, source, width, options, monitor);
 }
 
-VectorIndex VectorIndex::build(const Database& database, const std::string& retriever_hash,
+VectorIndex VectorIndex::build(const db::Database& database, const std::string& retriever_hash,
                                const VectorIndexOptions& options, const Monitor& monitor) {
-  const ReadSnapshot snapshot(database);
+  const db::ReadSnapshot snapshot(database);
   IndexStamp stamp = present_stamp(database, retriever_hash);
-  const std::vector<ClipEmbedding> embeddings = database.embeddings(retriever_hash);
+  const std::vector<db::ClipEmbedding> embeddings = database.embeddings(retriever_hash);
   if (embeddings.empty()) {
     throw Error(database.path() + ": has no vectors of this retriever (" + retriever_hash +
                 "); run: remomask index DB");
   }
   const auto width = static_cast<int>(embeddings.front().motion.size());
   std::vector<int64_t> ids;
-  for (const ClipEmbedding& embedding : embeddings) ids.push_back(embedding.clip_id);
+  for (const db::ClipEmbedding& embedding : embeddings) ids.push_back(embedding.clip_id);
   const std::vector<float> vectors = motion_vectors(database, embeddings, width);
   return VectorIndex(Impl::build(std::move(stamp), ids, vectors.data(), width, options, monitor));
 }
 
-VectorIndex VectorIndex::open(const std::string& path, const Database& database,
+VectorIndex VectorIndex::open(const std::string& path, const db::Database& database,
                               const std::string& retriever_hash) {
   IndexFile file = read_index_file(path);
   IndexDelta delta{file.header.stamp, {}};
   if (auto known = read_index_delta(path, file.header)) delta = std::move(*known);
   IndexSegments segments(std::move(file.index), std::move(file.exact));
-  const ReadSnapshot snapshot(database);
+  const db::ReadSnapshot snapshot(database);
   require_same_origin(path, delta.stamp, database, retriever_hash);
   const FollowedState state =
       follow_database(database, file.header.ids, file.header.width, delta.stamp, delta.changes);
@@ -140,8 +140,8 @@ VectorIndex VectorIndex::open(const std::string& path, const Database& database,
       new Impl{std::move(file.header), path, std::move(delta.stamp), std::move(segments)}));
 }
 
-IndexDifference VectorIndex::follow(const Database& database) {
-  const ReadSnapshot snapshot(database);
+IndexDifference VectorIndex::follow(const db::Database& database) {
+  const db::ReadSnapshot snapshot(database);
   require_same_origin("the index in memory", stamp(), database, stamp().retriever_hash);
   IndexChanges changes = impl_->segments.changes();
   FollowedState state =
@@ -172,7 +172,7 @@ void VectorIndex::save(const std::string& path) {
   write_index_delta(path, impl_->base, {stamp(), {}});  // removes an old one
 }
 
-void VectorIndex::require_current(const Database& database) const {
+void VectorIndex::require_current(const db::Database& database) const {
   const IndexStamp now = present_stamp(database, stamp().retriever_hash);
   if (stamp().database_uuid != now.database_uuid || stamp().generation != now.generation ||
       stamp().writer != now.writer) {
@@ -206,4 +206,4 @@ std::string default_index_path(const std::string& database_path) {
   return database_path + ".index";
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

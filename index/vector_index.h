@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
 #include "db/database.h"
+#include "remomask/progress.h"
 
-namespace remomask {
+namespace remomask::index {
 
 struct VectorIndexOptions {
   /// What to build, as FAISS's index_factory reads it: "Flat" (exact), or an
@@ -58,7 +58,7 @@ class VectorIndex {
   /// Builds from the vectors that `retriever_hash` made. Throws Error when
   /// there are none, when one is not L2-normalised, or for a wrong option;
   /// Interrupted when the monitor's stop token asks for it.
-  static VectorIndex build(const Database& database, const std::string& retriever_hash,
+  static VectorIndex build(const db::Database& database, const std::string& retriever_hash,
                            const VectorIndexOptions& options = {}, const Monitor& monitor = {});
 
   /// The same from memory: `vectors` [ids][width], L2-normalised, any order of ids.
@@ -68,7 +68,7 @@ class VectorIndex {
   /// Reads what save() wrote and follows the database to its present state.
   /// Throws FileError when a file is missing, cut off or damaged; Error when
   /// the index belongs to another database, a later state or another retriever.
-  static VectorIndex open(const std::string& path, const Database& database,
+  static VectorIndex open(const std::string& path, const db::Database& database,
                           const std::string& retriever_hash);
 
   ~VectorIndex();
@@ -77,7 +77,7 @@ class VectorIndex {
 
   /// Takes over what has changed in the database that this index was built
   /// from: costs a list of ids and the new vectors. Throws Error for another database.
-  IndexDifference follow(const Database& database);
+  IndexDifference follow(const db::Database& database);
 
   /// Writes atomically. When `path` holds the base of this index, only the
   /// changes are written, to a small file beside it (delta_path in
@@ -94,7 +94,7 @@ class VectorIndex {
                                              const std::vector<int64_t>* allowed = nullptr) const;
 
   /// Throws Error when the index is not of the present state of `database`.
-  void require_current(const Database& database) const;
+  void require_current(const db::Database& database) const;
 
   int64_t count() const;
   int width() const;
@@ -111,4 +111,4 @@ class VectorIndex {
 /// Where the index of a database lies unless the user says otherwise.
 std::string default_index_path(const std::string& database_path);
 
-}  // namespace remomask
+}  // namespace remomask::index

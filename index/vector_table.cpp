@@ -5,34 +5,34 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "index/exact_scan.h"
 #include "motion/body_parts.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::index {
 
 namespace {
 
 // A row is [global / sqrt 2 | parts / sqrt 12] where it has parts: of length 1.
 const double kBodyGlobalScale = std::sqrt(2.0);
-const double kBodyPartScale = std::sqrt(2.0 * kBodyParts);
+const double kBodyPartScale = std::sqrt(2.0 * motion::kBodyParts);
 
 }  // namespace
 
-VectorTable VectorTable::of_bodies(const std::vector<ClipEmbedding>& embeddings) {
+VectorTable VectorTable::of_bodies(const std::vector<db::ClipEmbedding>& embeddings) {
   if (embeddings.empty()) return {0, 0};
-  const ClipEmbedding& first = embeddings.front();
+  const db::ClipEmbedding& first = embeddings.front();
   VectorTable table(static_cast<int>(first.motion.size()), static_cast<int>(first.parts.size()));
-  for (const ClipEmbedding& clip : embeddings) table.add(clip.clip_id, clip.motion, clip.parts);
+  for (const db::ClipEmbedding& clip : embeddings) table.add(clip.clip_id, clip.motion, clip.parts);
   return table;
 }
 
-VectorTable VectorTable::of_captions(const std::vector<ClipEmbedding>& embeddings) {
+VectorTable VectorTable::of_captions(const std::vector<db::ClipEmbedding>& embeddings) {
   const auto first = std::find_if(embeddings.begin(), embeddings.end(),
-                                  [](const ClipEmbedding& clip) { return !clip.text.empty(); });
+                                  [](const db::ClipEmbedding& clip) { return !clip.text.empty(); });
   if (first == embeddings.end()) return {0, 0};
   VectorTable table(static_cast<int>(first->text.size()), 0);
-  for (const ClipEmbedding& clip : embeddings) {
+  for (const db::ClipEmbedding& clip : embeddings) {
     if (!clip.text.empty()) table.add(clip.clip_id, clip.text, {});
   }
   return table;
@@ -91,4 +91,4 @@ std::vector<VectorHit> VectorTable::nearest(const LinearQuery& query, int64_t k,
   return hits;
 }
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -7,7 +7,7 @@
 #include "db/database.h"
 #include "index/vector_index.h"
 
-namespace remomask {
+namespace remomask::index {
 
 /// A query that is linear in a clip's vectors: similarity = global . clip.motion
 /// + parts . clip.parts.
@@ -20,9 +20,9 @@ struct LinearQuery {
 class VectorTable {
  public:
   /// Rows [motion | six parts] of the clips. Throws Error when the widths differ.
-  static VectorTable of_bodies(const std::vector<ClipEmbedding>& embeddings);
+  static VectorTable of_bodies(const std::vector<db::ClipEmbedding>& embeddings);
   /// Text vectors of the clips that have captions.
-  static VectorTable of_captions(const std::vector<ClipEmbedding>& embeddings);
+  static VectorTable of_captions(const std::vector<db::ClipEmbedding>& embeddings);
 
   /// The k best clips, best first, equal similarities by clip id; `allowed` (clip
   /// ids, ascending) limits the scan. Similarities are sums in double, rounded.
@@ -41,4 +41,4 @@ class VectorTable {
   std::vector<float> rows_;  ///< each scaled to length 1, as the exact scan wants
 };
 
-}  // namespace remomask
+}  // namespace remomask::index

@@ -1,8 +1,8 @@
 #include "motion/body_parts.h"
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::vector<int> part_columns(const Skeleton& skeleton, int part) {
   return columns;
 }
 
-}  // namespace remomask
+}  // namespace remomask::motion

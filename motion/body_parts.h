@@ -3,9 +3,9 @@
 #include <array>
 #include <vector>
 
-#include "motion/skeleton.h"
+#include "remomask/skeleton.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 inline constexpr int kBodyParts = 6;
 inline constexpr int kPartSlots = 4;
@@ -32,4 +32,4 @@ std::vector<int> joint_parts(const Skeleton& skeleton);
 /// 12 J - 1 columns belongs to exactly one part.
 std::vector<int> part_columns(const Skeleton& skeleton, int part);
 
-}  // namespace remomask
+}  // namespace remomask::motion

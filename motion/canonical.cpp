@@ -1,14 +1,15 @@
 #include "motion/canonical.h"
+#include "motion/vector.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
 #include "motion/heading.h"
 #include "motion/rotation.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 namespace {
 
@@ -20,7 +21,7 @@ void require_finite(const Motion& motion, const Skeleton& skeleton) {
   if (motion.frames < 1) throw Error("the motion has no frames");
   for (int t = 0; t < motion.frames; ++t) {
     for (int j = 0; j < motion.joints; ++j) {
-      if (!motion.position(t, j).allFinite()) {
+      if (!joint_position(motion, t, j).allFinite()) {
         throw Error("frame " + std::to_string(t) + ", joint " + skeleton.joint_names[j] +
                     ": the position is not a finite number");
       }
@@ -33,7 +34,7 @@ void require_finite(const Motion& motion, const Skeleton& skeleton) {
 /// length, and the root path is scaled by the length of the legs.
 Motion with_uniform_bones(const Motion& raw, const Skeleton& skeleton) {
   const auto bone = [&](int joint) {
-    return (raw.position(0, joint) - raw.position(0, skeleton.parents[joint])).norm();
+    return (joint_position(raw, 0, joint) - joint_position(raw, 0, skeleton.parents[joint])).norm();
   };
   const double source = bone(skeleton.leg_upper) + bone(skeleton.leg_lower);
   const double target =
@@ -51,15 +52,15 @@ Motion with_uniform_bones(const Motion& raw, const Skeleton& skeleton) {
   Motion result(raw.frames, raw.joints);
   std::vector<Vec3> now(raw.joints);
   for (int t = 0; t < raw.frames; ++t) {
-    now[0] = scale * raw.position(t, 0);
-    result.set(t, 0, now[0]);
+    now[0] = scale * joint_position(raw, t, 0);
+    set_joint_position(result, t, 0, now[0]);
     for (int j = 1; j < raw.joints; ++j) {
       const int parent = skeleton.parents[j];
-      Vec3 direction = raw.position(t, j) - raw.position(t, parent);
+      Vec3 direction = joint_position(raw, t, j) - joint_position(raw, t, parent);
       const double length = direction.norm();
-      direction = length > 1e-9 ? Vec3(direction / length) : skeleton.rest_directions[j];
+      direction = length > 1e-9 ? Vec3(direction / length) : rest_direction(skeleton, j);
       now[j] = now[parent] + skeleton.bone_lengths[j] * direction;
-      result.set(t, j, now[j]);
+      set_joint_position(result, t, j, now[j]);
     }
   }
   return result;
@@ -79,8 +80,8 @@ Motion canonicalize(const Motion& raw, const Skeleton& skeleton, const Canonical
     shift.y() = -lowest;
   }
   if (options.origin) {
-    shift.x() = -motion.position(0, 0).x();
-    shift.z() = -motion.position(0, 0).z();
+    shift.x() = -joint_position(motion, 0, 0).x();
+    shift.z() = -joint_position(motion, 0, 0).z();
   }
   Quat turn = Quat::Identity();
   if (options.facing) {
@@ -90,7 +91,7 @@ Motion canonicalize(const Motion& raw, const Skeleton& skeleton, const Canonical
   const Eigen::Matrix3d matrix = turn.toRotationMatrix();
   for (int t = 0; t < motion.frames; ++t) {
     for (int j = 0; j < motion.joints; ++j) {
-      motion.set(t, j, matrix * (motion.position(t, j) + shift));
+      set_joint_position(motion, t, j, matrix * (joint_position(motion, t, j) + shift));
     }
   }
   return motion;
@@ -132,4 +133,4 @@ Motion resample(const Motion& motion, double source_fps, double target_fps) {
   return result;
 }
 
-}  // namespace remomask
+}  // namespace remomask::motion

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "motion/motion.h"
+#include "remomask/motion.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 struct CanonicalOptions {
   bool uniform_skeleton = true;  ///< give every clip the bone lengths of the skeleton
@@ -22,4 +22,4 @@ Motion mirror_motion(const Motion& motion, const Skeleton& skeleton);
 /// Linear resampling in time (positions) from `source_fps` to `target_fps`.
 Motion resample(const Motion& motion, double source_fps, double target_fps);
 
-}  // namespace remomask
+}  // namespace remomask::motion

@@ -1,13 +1,14 @@
 #include "motion/features.h"
+#include "motion/vector.h"
 
 #include <cmath>
 
-#include "base/error.h"
 #include "motion/heading.h"
 #include "motion/rest_pose.h"
 #include "motion/rotation.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 namespace {
 
@@ -35,8 +36,9 @@ void write_official_rotations(const Motion& motion, int frame, const Quat& facin
   for (const std::vector<int>& chain : skeleton.chains) {
     Quat before = facing;
     for (size_t i = 1; i < chain.size(); ++i) {
-      const Vec3 bone = motion.position(frame, chain[i]) - motion.position(frame, chain[i - 1]);
-      const Quat world = shortest_arc(skeleton.rest_directions[chain[i]], bone);
+      const Vec3 bone =
+          joint_position(motion, frame, chain[i]) - joint_position(motion, frame, chain[i - 1]);
+      const Quat world = shortest_arc(rest_direction(skeleton, chain[i]), bone);
       write_6d(before.conjugate() * world, out + (chain[i] - 1) * 6);
       before = world;
     }
@@ -51,7 +53,8 @@ void write_fixed_rotations(const Motion& motion, int frame, const Quat& facing,
   std::vector<Quat> carried(skeleton.joints(), Quat::Identity());
   for (int j = 1; j < skeleton.joints(); ++j) {
     const int parent = skeleton.parents[j];
-    const Vec3 bone = facing * (motion.position(frame, j) - motion.position(frame, parent));
+    const Vec3 bone =
+        facing * (joint_position(motion, frame, j) - joint_position(motion, frame, parent));
     const Quat local = shortest_arc(rest[j], carried[parent].conjugate() * bone);
     write_6d(local, out + (j - 1) * 6);
     carried[j] = carried[parent] * local;
@@ -125,15 +128,15 @@ Features extract_features(const Motion& canonical, const Skeleton& skeleton, Fea
     const double half_turn = (headings.angles[t] - headings.angles[t + 1]) / 2;
     row[0] = static_cast<float>(mode == FeatureMode::official ? std::asin(std::sin(half_turn))
                                                               : half_turn);
-    const Vec3 root = canonical.position(t, 0);
-    const Vec3 root_step = next_facing * (canonical.position(t + 1, 0) - root);
+    const Vec3 root = joint_position(canonical, t, 0);
+    const Vec3 root_step = next_facing * (joint_position(canonical, t + 1, 0) - root);
     row[1] = static_cast<float>(root_step.x());
     row[2] = static_cast<float>(root_step.z());
     row[3] = static_cast<float>(root.y());
     const Eigen::Matrix3d to_facing = facing.toRotationMatrix();
     for (int j = 0; j < joints; ++j) {
-      const Vec3 position = canonical.position(t, j);
-      const Vec3 step = to_facing * (canonical.position(t + 1, j) - position);
+      const Vec3 position = joint_position(canonical, t, j);
+      const Vec3 step = to_facing * (joint_position(canonical, t + 1, j) - position);
       const Vec3 local = to_facing * (position - Vec3(root.x(), 0, root.z()));
       for (int axis = 0; axis < 3; ++axis) {
         row[layout.velocity + j * 3 + axis] = static_cast<float>(step[axis]);
@@ -149,7 +152,8 @@ Features extract_features(const Motion& canonical, const Skeleton& skeleton, Fea
     for (const std::vector<int>* feet : {&skeleton.left_feet, &skeleton.right_feet}) {
       for (int joint : *feet) {
         const double moved =
-            (canonical.position(t + 1, joint) - canonical.position(t, joint)).squaredNorm();
+            (joint_position(canonical, t + 1, joint) - joint_position(canonical, t, joint))
+                .squaredNorm();
         *contact++ = moved < skeleton.contact_threshold ? 1.f : 0.f;
       }
     }
@@ -177,10 +181,12 @@ Motion recover_motion(const Features& features, const Skeleton& skeleton) {
   for (int t = 0; t < features.frames; ++t) {
     const Vec3& root = path.positions[t];
     const Quat to_world = path.facing[t].conjugate();
-    motion.set(t, 0, root);
+    set_joint_position(motion, t, 0, root);
     for (int j = 1; j < skeleton.joints(); ++j) {
       const float* local = features.row(t) + layout.local + (j - 1) * 3;
-      motion.set(t, j, to_world * Vec3(local[0], local[1], local[2]) + Vec3(root.x(), 0, root.z()));
+      set_joint_position(
+          motion, t, j,
+          to_world * Vec3(local[0], local[1], local[2]) + Vec3(root.x(), 0, root.z()));
     }
   }
   return motion;
@@ -196,9 +202,9 @@ Motion recover_motion_with_next_frame(const Features& features, const Skeleton& 
   std::copy(motion.positions.begin(), motion.positions.end(), longer.positions.begin());
   for (int j = 0; j < skeleton.joints(); ++j) {
     const Vec3 step(velocity[j * 3], velocity[j * 3 + 1], velocity[j * 3 + 2]);
-    longer.set(last + 1, j, motion.position(last, j) + to_world * step);
+    set_joint_position(longer, last + 1, j, joint_position(motion, last, j) + to_world * step);
   }
   return longer;
 }
 
-}  // namespace remomask
+}  // namespace remomask::motion

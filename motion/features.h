@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "motion/motion.h"
+#include "remomask/motion.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 /// Which arithmetic: `official` reproduces HumanML3D bit for bit with its
 /// historical defects (evaluation, imported weights); `fixed` has the true
@@ -51,4 +51,4 @@ Motion recover_motion(const Features& features, const Skeleton& skeleton);
 /// features of recovered positions have as many rows as before.
 Motion recover_motion_with_next_frame(const Features& features, const Skeleton& skeleton);
 
-}  // namespace remomask
+}  // namespace remomask::motion

@@ -1,10 +1,11 @@
 #include "motion/heading.h"
+#include "motion/vector.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace remomask {
+namespace remomask::motion {
 
 namespace {
 
@@ -78,10 +79,10 @@ Headings fixed_headings(const Motion& motion, const Skeleton& skeleton) {
 }  // namespace
 
 Vec3 across_body(const Motion& motion, int frame, const Skeleton& skeleton, bool historical_hips) {
-  const Vec3 hips =
-      motion.position(frame, skeleton.right_hip) - motion.position(frame, skeleton.left_hip);
-  const Vec3 shoulders = motion.position(frame, skeleton.right_shoulder) -
-                         motion.position(frame, skeleton.left_shoulder);
+  const Vec3 hips = joint_position(motion, frame, skeleton.right_hip) -
+                    joint_position(motion, frame, skeleton.left_hip);
+  const Vec3 shoulders = joint_position(motion, frame, skeleton.right_shoulder) -
+                         joint_position(motion, frame, skeleton.left_shoulder);
   return historical_hips ? Vec3(shoulders - hips) : Vec3(shoulders + hips);
 }
 
@@ -90,4 +91,4 @@ Headings find_headings(const Motion& motion, const Skeleton& skeleton, FeatureMo
                                        : fixed_headings(motion, skeleton);
 }
 
-}  // namespace remomask
+}  // namespace remomask::motion

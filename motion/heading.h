@@ -3,9 +3,10 @@
 #include <vector>
 
 #include "motion/features.h"
-#include "motion/motion.h"
+#include "motion/vector.h"
+#include "remomask/motion.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 /// From the right to the left hip and shoulder, summed and negated: points to
 /// the character's right. With `historical_hips` the hips count the other way
@@ -26,4 +27,4 @@ struct Headings {
 };
 Headings find_headings(const Motion& motion, const Skeleton& skeleton, FeatureMode mode);
 
-}  // namespace remomask
+}  // namespace remomask::motion

@@ -1,6 +1,8 @@
-#include "motion/motion.h"
+#include "remomask/motion.h"
 
-#include "base/error.h"
+#include <algorithm>
+
+#include "remomask/error.h"
 
 namespace remomask {
 
@@ -10,6 +12,8 @@ Motion slice(const Motion& motion, int first, int last) {
                 " lie outside of the motion's " + std::to_string(motion.frames) + " frames");
   }
   Motion part(last - first, motion.joints);
+  part.fps = motion.fps;
+  part.skeleton = motion.skeleton;
   const size_t row = static_cast<size_t>(motion.joints) * 3;
   std::copy(motion.positions.begin() + first * row, motion.positions.begin() + last * row,
             part.positions.begin());

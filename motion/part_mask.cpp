@@ -4,9 +4,9 @@
 #include <functional>
 #include <numeric>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 namespace {
 
@@ -66,4 +66,4 @@ std::vector<FrameRun> whole_runs(const PartMask& mask) {
   return runs_where(mask.frames(), [&](int t) { return mask.whole(t); });
 }
 
-}  // namespace remomask
+}  // namespace remomask::motion

@@ -5,7 +5,7 @@
 
 #include "motion/body_parts.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 /// Body parts over time: a table of frames x six parts (order of body_parts()).
 class PartMask {
@@ -38,4 +38,4 @@ std::vector<FrameRun> part_runs(const PartMask& mask, int part);
 /// The stretches in which all six parts are.
 std::vector<FrameRun> whole_runs(const PartMask& mask);
 
-}  // namespace remomask
+}  // namespace remomask::motion

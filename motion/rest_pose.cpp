@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
-namespace remomask {
+namespace remomask::motion {
 
 namespace {
 
 std::vector<Vec3> make_t_pose(const Skeleton& skeleton) {
-  std::vector<Vec3> directions = skeleton.rest_directions;
+  std::vector<Vec3> directions;
+  for (size_t j = 0; j < skeleton.parents.size(); ++j)
+    directions.push_back(rest_direction(skeleton, j));
   for (const std::vector<int>& chain : skeleton.chains) {
     const auto holds = [&](int joint) {
       return std::find(chain.begin(), chain.end(), joint) != chain.end();
@@ -34,4 +36,4 @@ const std::vector<Vec3>& t_pose_directions(const Skeleton& skeleton) {
   return skeleton.joints() == kit_skeleton().joints() ? kit : humanml;
 }
 
-}  // namespace remomask
+}  // namespace remomask::motion

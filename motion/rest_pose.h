@@ -1,8 +1,9 @@
 #pragma once
 
-#include "motion/skeleton.h"
+#include "motion/vector.h"
+#include "remomask/skeleton.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 /// Unit directions of the bones in a T-pose (arms along +X and -X, legs down,
 /// feet to the front), by joint that ends the bone. Unlike the historical
@@ -10,4 +11,4 @@ namespace remomask {
 /// left is left in both skeletons.
 const std::vector<Vec3>& t_pose_directions(const Skeleton& skeleton);
 
-}  // namespace remomask
+}  // namespace remomask::motion

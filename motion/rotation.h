@@ -1,8 +1,9 @@
 #pragma once
 
-#include "motion/skeleton.h"
+#include "motion/vector.h"
+#include "remomask/skeleton.h"
 
-namespace remomask {
+namespace remomask::motion {
 
 /// Smallest rotation that brings direction `from` to direction `to` (any
 /// lengths; identity when one has none). Opposite directions turn half around
@@ -35,4 +36,4 @@ inline void write_6d(const Quat& rotation, float* out) {
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::motion

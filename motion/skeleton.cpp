@@ -1,10 +1,15 @@
-#include "motion/skeleton.h"
+#include "remomask/skeleton.h"
+
+#include "remomask/error.h"
 
 namespace remomask {
 
 namespace {
 
-const Vec3 kUp(0, 1, 0), kDown(0, -1, 0), kLeft(1, 0, 0), kRight(-1, 0, 0), kFront(0, 0, 1);
+using Direction = std::array<double, 3>;
+
+constexpr Direction kNone{0, 0, 0}, kUp{0, 1, 0}, kDown{0, -1, 0}, kLeft{1, 0, 0}, kRight{-1, 0, 0},
+    kFront{0, 0, 1};
 
 Skeleton make_humanml_skeleton() {
   Skeleton s;
@@ -20,9 +25,9 @@ Skeleton make_humanml_skeleton() {
               {0, 3, 6, 9, 12, 15},
               {9, 14, 17, 19, 21},
               {9, 13, 16, 18, 20}};
-  s.rest_directions = {Vec3::Zero(), kLeft, kRight, kUp,    kDown, kDown, kUp,    kDown,
-                       kDown,        kUp,   kFront, kFront, kUp,   kLeft, kRight, kFront,
-                       kDown,        kDown, kDown,  kDown,  kDown, kDown};
+  s.rest_directions = {kNone, kLeft, kRight, kUp,    kDown, kDown, kUp,    kDown,
+                       kDown, kUp,   kFront, kFront, kUp,   kLeft, kRight, kFront,
+                       kDown, kDown, kDown,  kDown,  kDown, kDown};
   // Bone lengths of HumanML3D's clip 000021, which every clip is scaled to.
   s.bone_lengths = {0,        0.103074, 0.109883, 0.131568, 0.393623, 0.390188, 0.143190, 0.432433,
                     0.425643, 0.057365, 0.143382, 0.149419, 0.219360, 0.137487, 0.143383, 0.103039,
@@ -56,9 +61,9 @@ Skeleton make_kit_skeleton() {
               {3, 5, 6, 7},
               {3, 8, 9, 10}};
   // The right side rests at +X as in the official table, although it lies at -X in the data.
-  s.rest_directions = {Vec3::Zero(), kUp,    kUp,    kUp,   kUp,   kLeft,  kDown,
-                       kDown,        kRight, kDown,  kDown, kLeft, kDown,  kDown,
-                       kFront,       kFront, kRight, kDown, kDown, kFront, kFront};
+  s.rest_directions = {kNone,  kUp,    kUp,    kUp,   kUp,   kLeft,  kDown,
+                       kDown,  kRight, kDown,  kDown, kLeft, kDown,  kDown,
+                       kFront, kFront, kRight, kDown, kDown, kFront, kFront};
   s.bone_lengths.assign(21, 0.0);
   s.mirror = {0, 1, 2, 3, 4, 8, 9, 10, 5, 6, 7, 16, 17, 18, 19, 20, 11, 12, 13, 14, 15};
   s.right_hip = 11;
@@ -84,6 +89,12 @@ const Skeleton& humanml_skeleton() {
 const Skeleton& kit_skeleton() {
   static const Skeleton skeleton = make_kit_skeleton();
   return skeleton;
+}
+
+const Skeleton& skeleton_named(const std::string& name) {
+  if (name == "humanml3d") return humanml_skeleton();
+  if (name == "kit") return kit_skeleton();
+  throw Error("unknown skeleton \"" + name + "\"; use humanml3d or kit");
 }
 
 }  // namespace remomask

@@ -7,9 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace remomask {
-
-namespace nn = torch::nn;
+namespace remomask::nn {
 
 at::Tensor sinusoidal_positions(int64_t count, int64_t width) {
   const auto position = torch::arange(count, torch::kDouble).unsqueeze(1);
@@ -43,9 +41,9 @@ at::Tensor key_mask_bias(const at::Tensor& mask) {
 }
 
 FeedForwardImpl::FeedForwardImpl(int64_t width, int64_t hidden, double dropout)
-    : expand_(register_module("expand", nn::Linear(width, hidden))),
-      contract_(register_module("contract", nn::Linear(hidden, width))),
-      dropout_(register_module("dropout", nn::Dropout(dropout))) {}
+    : expand_(register_module("expand", torch::nn::Linear(width, hidden))),
+      contract_(register_module("contract", torch::nn::Linear(hidden, width))),
+      dropout_(register_module("dropout", torch::nn::Dropout(dropout))) {}
 
 at::Tensor FeedForwardImpl::forward(const at::Tensor& x) {
   return dropout_(contract_(dropout_(torch::gelu(expand_(x)))));
@@ -53,14 +51,14 @@ at::Tensor FeedForwardImpl::forward(const at::Tensor& x) {
 
 EncoderBlockImpl::EncoderBlockImpl(int64_t width, int64_t heads, int64_t hidden, double dropout)
     : heads_(heads),
-      attention_norm_(
-          register_module("attention_norm", nn::LayerNorm(nn::LayerNormOptions({width})))),
-      feed_forward_norm_(
-          register_module("feed_forward_norm", nn::LayerNorm(nn::LayerNormOptions({width})))),
-      query_key_value_(register_module("query_key_value", nn::Linear(width, 3 * width))),
-      output_(register_module("output", nn::Linear(width, width))),
+      attention_norm_(register_module("attention_norm",
+                                      torch::nn::LayerNorm(torch::nn::LayerNormOptions({width})))),
+      feed_forward_norm_(register_module(
+          "feed_forward_norm", torch::nn::LayerNorm(torch::nn::LayerNormOptions({width})))),
+      query_key_value_(register_module("query_key_value", torch::nn::Linear(width, 3 * width))),
+      output_(register_module("output", torch::nn::Linear(width, width))),
       feed_forward_(register_module("feed_forward", FeedForward(width, hidden, dropout))),
-      dropout_(register_module("dropout", nn::Dropout(dropout))) {}
+      dropout_(register_module("dropout", torch::nn::Dropout(dropout))) {}
 
 at::Tensor EncoderBlockImpl::forward(const at::Tensor& x, const at::Tensor& bias) {
   const auto parts = query_key_value_(attention_norm_(x)).chunk(3, -1);
@@ -71,7 +69,8 @@ at::Tensor EncoderBlockImpl::forward(const at::Tensor& x, const at::Tensor& bias
 
 EncoderStackImpl::EncoderStackImpl(int64_t layers, int64_t width, int64_t heads, int64_t hidden,
                                    double dropout)
-    : final_norm_(register_module("final_norm", nn::LayerNorm(nn::LayerNormOptions({width})))) {
+    : final_norm_(register_module("final_norm",
+                                  torch::nn::LayerNorm(torch::nn::LayerNormOptions({width})))) {
   for (int64_t i = 0; i < layers; ++i) {
     blocks_.push_back(
         register_module("block" + std::to_string(i), EncoderBlock(width, heads, hidden, dropout)));
@@ -84,16 +83,16 @@ at::Tensor EncoderStackImpl::forward(at::Tensor x, const at::Tensor& mask) {
   return final_norm_(x);
 }
 
-void initialise_transformer_weights(nn::Module& module) {
+void initialise_transformer_weights(torch::nn::Module& module) {
   at::NoGradGuard no_grad;
   for (auto& child : module.modules(/*include_self=*/true)) {
-    if (auto* linear = child->as<nn::LinearImpl>()) {
+    if (auto* linear = child->as<torch::nn::LinearImpl>()) {
       linear->weight.normal_(0, 0.02);
       if (linear->bias.defined()) linear->bias.zero_();
-    } else if (auto* embedding = child->as<nn::EmbeddingImpl>()) {
+    } else if (auto* embedding = child->as<torch::nn::EmbeddingImpl>()) {
       embedding->weight.normal_(0, 0.02);
     }
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::nn

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace remomask {
+namespace remomask::nn {
 
 /// Sinusoidal positions (Vaswani et al. 2017), interleaved sin, cos:
 /// [count, width]; width even.
@@ -67,4 +67,4 @@ TORCH_MODULE(EncoderStack);
 /// N(0, 0.02) for every Linear and Embedding weight, zero biases.
 void initialise_transformer_weights(torch::nn::Module& module);
 
-}  // namespace remomask
+}  // namespace remomask::nn

@@ -2,10 +2,10 @@
 
 #include <torch/nn/module.h>
 
-#include "base/error.h"
 #include "base/hash.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::nn {
 
 namespace {
 constexpr int kModelVersion = 1;
@@ -115,4 +115,4 @@ void load_module_tensors(torch::nn::Module& module, const TensorMap& tensors,
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::nn

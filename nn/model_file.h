@@ -11,7 +11,7 @@ namespace torch::nn {
 class Module;
 }
 
-namespace remomask {
+namespace remomask::nn {
 
 /// One trained network inside a model file.
 struct ModelStage {
@@ -42,4 +42,4 @@ TensorMap module_tensors(const torch::nn::Module& module);
 void load_module_tensors(torch::nn::Module& module, const TensorMap& tensors,
                          const std::string& origin);
 
-}  // namespace remomask
+}  // namespace remomask::nn

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "base/error.h"
 #include "base/file.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::nn {
 
 namespace {
 
@@ -111,4 +111,4 @@ TensorFile load_safetensors(const std::string& path) {
   return file;
 }
 
-}  // namespace remomask
+}  // namespace remomask::nn

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-namespace remomask {
+namespace remomask::nn {
 
 /// Tensors by name; an ordered map, so that files are reproducible.
 using TensorMap = std::map<std::string, at::Tensor>;
@@ -24,4 +24,4 @@ void save_safetensors(const std::string& path, const TensorMap& tensors,
 /// overlapping or foreign file. Nothing in the file is ever executed.
 TensorFile load_safetensors(const std::string& path);
 
-}  // namespace remomask
+}  // namespace remomask::nn

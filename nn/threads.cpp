@@ -3,13 +3,13 @@
 #include <ATen/Parallel.h>
 #include <omp.h>
 
-#include "base/error.h"
 #include "base/machine.h"
+#include "remomask/error.h"
 
 // Only OpenBLAS exports it; with another BLAS the address is null.
 extern "C" __attribute__((weak)) void openblas_set_num_threads(int);
 
-namespace remomask {
+namespace remomask::nn {
 
 void set_compute_threads(int threads) {
   if (threads < 0) throw Error("the number of threads must not be negative");
@@ -19,4 +19,4 @@ void set_compute_threads(int threads) {
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(threads);
 }
 
-}  // namespace remomask
+}  // namespace remomask::nn

@@ -1,9 +1,9 @@
 #pragma once
 
-namespace remomask {
+namespace remomask::nn {
 
 /// One thread budget for libtorch, OpenMP and OpenBLAS. 0: all available CPUs.
 /// Throws Error for a negative number.
 void set_compute_threads(int threads);
 
-}  // namespace remomask
+}  // namespace remomask::nn

@@ -1,8 +1,8 @@
 #include "retriever/config.h"
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::retriever {
 
 Queues parse_queues(const std::string& name) {
   for (const Queues queues : {Queues::none, Queues::motion, Queues::text, Queues::both}) {
@@ -68,7 +68,7 @@ void use_whole_body_encoder(RetrieverConfig& config) {
 void to_json(nlohmann::json& json, const RetrieverConfig& config) {
   json = {{"preset", config.preset},
           {"skeleton", config.skeleton},
-          {"mode", feature_mode_name(config.mode)},
+          {"mode", motion::feature_mode_name(config.mode)},
           {"patch", config.patch},
           {"width", config.width},
           {"layers", config.layers},
@@ -84,7 +84,7 @@ void to_json(nlohmann::json& json, const RetrieverConfig& config) {
 void from_json(const nlohmann::json& json, RetrieverConfig& config) {
   json.at("preset").get_to(config.preset);
   json.at("skeleton").get_to(config.skeleton);
-  config.mode = parse_feature_mode(json.at("mode").get<std::string>());
+  config.mode = motion::parse_feature_mode(json.at("mode").get<std::string>());
   json.at("patch").get_to(config.patch);
   json.at("width").get_to(config.width);
   json.at("layers").get_to(config.layers);
@@ -98,4 +98,4 @@ void from_json(const nlohmann::json& json, RetrieverConfig& config) {
   config.text_tower = json.at("text_tower");
 }
 
-}  // namespace remomask
+}  // namespace remomask::retriever

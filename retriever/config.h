@@ -6,7 +6,7 @@
 
 #include "motion/features.h"
 
-namespace remomask {
+namespace remomask::retriever {
 
 /// Which queues of negatives the training keeps besides the batch.
 enum class Queues { none, motion, text, both };
@@ -17,7 +17,7 @@ const char* queues_name(Queues queues);
 struct RetrieverConfig {
   std::string preset = "base";
   std::string skeleton = "humanml3d";
-  FeatureMode mode = FeatureMode::fixed;
+  motion::FeatureMode mode = motion::FeatureMode::fixed;
   int64_t patch = 4;  ///< frames a patch of the motion encoder
   int64_t width = 128, layers = 3, heads = 4, hidden = 256;  ///< of each part encoder
   double dropout = 0.1;                                      ///< in the projection heads
@@ -39,4 +39,4 @@ void use_whole_body_encoder(RetrieverConfig& config);
 void to_json(nlohmann::json& json, const RetrieverConfig& config);
 void from_json(const nlohmann::json& json, RetrieverConfig& config);
 
-}  // namespace remomask
+}  // namespace remomask::retriever

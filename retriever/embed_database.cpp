@@ -7,13 +7,13 @@
 #include <unordered_map>
 #include <vector>
 
-#include "base/error.h"
 #include "motion/features.h"
-#include "motion/skeleton.h"
+#include "remomask/error.h"
+#include "remomask/skeleton.h"
 #include "retriever/projection.h"
 #include "text/caption.h"
 
-namespace remomask {
+namespace remomask::retriever {
 
 namespace {
 
@@ -34,7 +34,7 @@ class CaptionVectors {
   std::vector<float> mean(const std::vector<std::string>& captions) {
     std::vector<at::Tensor> vectors;
     for (const std::string& caption : captions) {
-      const std::string normal = normalise_caption(caption);
+      const std::string normal = text::normalise_caption(caption);
       if (normal.empty()) continue;
       auto known = vectors_.find(normal);
       if (known == vectors_.end()) {
@@ -51,28 +51,23 @@ class CaptionVectors {
   std::unordered_map<std::string, at::Tensor> vectors_;
 };
 
-const Skeleton& stored_skeleton(const Clip& clip) {
-  for (const Skeleton* skeleton : {&humanml_skeleton(), &kit_skeleton()}) {
-    if (skeleton->name == clip.skeleton) return *skeleton;
-  }
-  throw Error("clip '" + clip.name + "' has the unknown skeleton '" + clip.skeleton +
-              "'; it was stored by another program, remove it");
-}
-
-Features stored_features(const Database& database, const Clip& clip, FeatureMode mode) {
+motion::Features stored_features(const db::Database& database, const db::Clip& clip,
+                                 motion::FeatureMode mode) {
   try {
-    return extract_features_all_frames(database.motion(clip.id), stored_skeleton(clip), mode);
+    return motion::extract_features_all_frames(database.motion(clip.id),
+                                               skeleton_named(clip.skeleton), mode);
   } catch (const Error& error) {
     throw Error("clip '" + clip.name + "': " + error.what());
   }
 }
 
-std::vector<Clip> clips_to_embed(const Database& database, const std::string& retriever_hash) {
-  const ReadSnapshot snapshot(database);
+std::vector<db::Clip> clips_to_embed(const db::Database& database,
+                                     const std::string& retriever_hash) {
+  const db::ReadSnapshot snapshot(database);
   const std::vector<int64_t> stored = database.embedded_clips(retriever_hash);
   if (static_cast<int64_t>(stored.size()) == database.clip_count()) return {};
-  std::vector<Clip> clips = database.clips();
-  std::erase_if(clips, [&](const Clip& clip) {
+  std::vector<db::Clip> clips = database.clips();
+  std::erase_if(clips, [&](const db::Clip& clip) {
     return clip.frames < kLeastFramesToEmbed ||
            std::binary_search(stored.begin(), stored.end(), clip.id);
   });
@@ -81,8 +76,8 @@ std::vector<Clip> clips_to_embed(const Database& database, const std::string& re
 
 }  // namespace
 
-int64_t embed_database(Database& database, const Retriever& retriever, const Monitor& monitor) {
-  const std::vector<Clip> clips = clips_to_embed(database, retriever.hash());
+int64_t embed_database(db::Database& database, const Retriever& retriever, const Monitor& monitor) {
+  const std::vector<db::Clip> clips = clips_to_embed(database, retriever.hash());
   CaptionVectors captions(retriever);
   for (size_t first = 0; first < clips.size(); first += kEmbeddingBatch) {
     if (monitor.stop_requested()) {
@@ -91,14 +86,14 @@ int64_t embed_database(Database& database, const Retriever& retriever, const Mon
                         " clips, which are stored; the same command goes on");
     }
     const size_t last = std::min(clips.size(), first + kEmbeddingBatch);
-    std::vector<Features> features;
+    std::vector<motion::Features> features;
     for (size_t c = first; c < last; ++c) {
       features.push_back(stored_features(database, clips[c], retriever.feature_mode()));
     }
-    std::vector<const Features*> batch;
-    for (const Features& one : features) batch.push_back(&one);
+    std::vector<const motion::Features*> batch;
+    for (const motion::Features& one : features) batch.push_back(&one);
     const MotionEncoding motion = retriever.encode_motion(batch);
-    std::vector<ClipEmbedding> embeddings;
+    std::vector<db::ClipEmbedding> embeddings;
     for (size_t c = first; c < last; ++c) {
       const auto row = static_cast<int64_t>(c - first);
       embeddings.push_back({clips[c].id, float_vector(motion.global[row]),
@@ -112,4 +107,4 @@ int64_t embed_database(Database& database, const Retriever& retriever, const Mon
   return static_cast<int64_t>(clips.size());
 }
 
-}  // namespace remomask
+}  // namespace remomask::retriever

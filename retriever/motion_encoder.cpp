@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "motion/body_parts.h"
 #include "nn/layers.h"
+#include "remomask/error.h"
 #include "retriever/packed_attention.h"
 
-namespace remomask {
+namespace remomask::retriever {
 
 namespace {
 
@@ -19,13 +19,6 @@ constexpr int kLeastFrames = 4;
 constexpr float kLargestDeviation = 8;
 /// Channels that hardly move (m, m/frame, rotation) are not blown up to unit size.
 constexpr double kLeastDeviation = 2e-3;
-
-const Skeleton& retriever_skeleton(const std::string& name) {
-  for (const Skeleton* skeleton : {&humanml_skeleton(), &kit_skeleton()}) {
-    if (skeleton->name == name) return *skeleton;
-  }
-  throw Error("the retriever does not know the skeleton '" + name + "'; use humanml3d or kit");
-}
 
 /// x [G, M, a] through G linear layers [G, a, b], [G, 1, b].
 at::Tensor grouped_linear(const at::Tensor& x, const at::Tensor& weight, const at::Tensor& bias) {
@@ -73,9 +66,11 @@ class PartBlockImpl : public torch::nn::Module {
   at::Tensor expand_weight_, expand_bias_, contract_weight_, contract_bias_;
 };
 
-MotionCrop whole_clip(const Features& features) { return {&features, 0, features.frames, {}}; }
+MotionCrop whole_clip(const motion::Features& features) {
+  return {&features, 0, features.frames, {}};
+}
 
-MotionCrop random_crop(const Features& features, double least_share, double patch_keep,
+MotionCrop random_crop(const motion::Features& features, double least_share, double patch_keep,
                        int64_t patch, CounterRandom& random) {
   const double share = random.uniform(least_share, 1.0);
   const int frames = std::clamp(static_cast<int>(std::lround(share * features.frames)),
@@ -92,17 +87,17 @@ MotionCrop random_crop(const Features& features, double least_share, double patc
 }
 
 MotionEncoder::MotionEncoder(const RetrieverConfig& config) : config_(config) {
-  const Skeleton& skeleton = retriever_skeleton(config.skeleton);
+  const Skeleton& skeleton = skeleton_named(config.skeleton);
   if (config.width % config.heads != 0 || config.width % 2 != 0) {
     throw Error("the retriever's width must be even and a multiple of its heads");
   }
-  if (config.encoders != 1 && config.encoders != kBodyParts) {
+  if (config.encoders != 1 && config.encoders != motion::kBodyParts) {
     throw Error("the retriever's encoders must be 1 or 6");
   }
   columns_.resize(static_cast<size_t>(config.encoders));
-  for (int part = 0; part < kBodyParts; ++part) {
+  for (int part = 0; part < motion::kBodyParts; ++part) {
     auto& columns = columns_[static_cast<size_t>(part) % columns_.size()];
-    const std::vector<int> more = part_columns(skeleton, part);
+    const std::vector<int> more = motion::part_columns(skeleton, part);
     columns.insert(columns.end(), more.begin(), more.end());
     widest_ = std::max(widest_, static_cast<int64_t>(columns.size()));
   }
@@ -114,7 +109,7 @@ MotionEncoder::MotionEncoder(const RetrieverConfig& config) : config_(config) {
   embedding.slice(1, config.patch * widest_).normal_(0, 0.5);
   embed_weight_ = register_parameter("embed_weight", embedding);
   embed_bias_ = register_parameter("embed_bias", torch::zeros({encoders, 1, width}));
-  positions_ = sinusoidal_positions(1024, width);
+  positions_ = nn::sinusoidal_positions(1024, width);
   for (int64_t i = 0; i < config.layers; ++i) {
     blocks_.push_back(register_module(
         "block" + std::to_string(i),
@@ -122,17 +117,17 @@ MotionEncoder::MotionEncoder(const RetrieverConfig& config) : config_(config) {
   }
   head_ = register_module(
       "head", std::make_shared<ProjectionHead>(encoders * width, config.embedding, config.dropout));
-  part_weight_ =
-      register_parameter("part_weight", initial_weight(kBodyParts, width, config.part_embedding));
+  part_weight_ = register_parameter(
+      "part_weight", initial_weight(motion::kBodyParts, width, config.part_embedding));
   part_bias_ =
-      register_parameter("part_bias", torch::zeros({kBodyParts, 1, config.part_embedding}));
+      register_parameter("part_bias", torch::zeros({motion::kBodyParts, 1, config.part_embedding}));
 }
 
-void MotionEncoder::set_statistics(const std::vector<const Features*>& train) {
+void MotionEncoder::set_statistics(const std::vector<const motion::Features*>& train) {
   const auto columns = static_cast<size_t>(mean_.size(0));
   std::vector<double> sum(columns), squares(columns);
   double count = 0;
-  for (const Features* clip : train) {
+  for (const motion::Features* clip : train) {
     for (int t = 0; t < clip->frames; ++t) {
       const float* row = clip->row(t);
       for (size_t c = 0; c < columns; ++c) {
@@ -233,7 +228,7 @@ MotionVectors MotionEncoder::forward(const PatchBatch& batch) {
   MotionVectors vectors;
   vectors.global = head_->forward(starts.transpose(0, 1).flatten(1));
   // A single encoder's state goes through the heads of all parts.
-  const at::Tensor of_parts = starts.expand({kBodyParts, -1, -1});
+  const at::Tensor of_parts = starts.expand({motion::kBodyParts, -1, -1});
   vectors.parts = unit_rows(grouped_linear(of_parts, part_weight_, part_bias_).transpose(0, 1));
   return vectors;
 }
@@ -246,4 +241,4 @@ std::vector<at::Tensor> MotionEncoder::block_states(const PatchBatch& batch) {
   return states;
 }
 
-}  // namespace remomask
+}  // namespace remomask::retriever

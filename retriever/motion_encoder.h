@@ -11,7 +11,7 @@
 #include "retriever/config.h"
 #include "retriever/projection.h"
 
-namespace remomask {
+namespace remomask::retriever {
 
 /// Crops of clips as patches, one sequence after the other; each sequence
 /// begins with a start token.
@@ -24,15 +24,15 @@ struct PatchBatch {
 
 /// A stretch of a clip, with a patch mask that may leave patches out.
 struct MotionCrop {
-  const Features* features;
+  const motion::Features* features;
   int first = 0, frames = 0;
   std::vector<int64_t> kept;  ///< patches to keep, ascending; empty: all
 };
 
-MotionCrop whole_clip(const Features& features);
+MotionCrop whole_clip(const motion::Features& features);
 /// Keeps max(share * frames, 4) or more frames at a random place, then each
 /// patch with probability `patch_keep` (at least one).
-MotionCrop random_crop(const Features& features, double least_share, double patch_keep,
+MotionCrop random_crop(const motion::Features& features, double least_share, double patch_keep,
                        int64_t patch, CounterRandom& random);
 
 struct MotionVectors {
@@ -55,7 +55,7 @@ class MotionEncoder final : public torch::nn::Module {
   explicit MotionEncoder(const RetrieverConfig& config);
 
   /// Sets the statistics that features are normalised by (buffers).
-  void set_statistics(const std::vector<const Features*>& train);
+  void set_statistics(const std::vector<const motion::Features*>& train);
   /// Normalises and cuts into patches; no gradient. The last partial patch
   /// repeats the last frame. Throws Error for clips under 4 rows, of another
   /// width, or not finite.
@@ -79,4 +79,4 @@ class MotionEncoder final : public torch::nn::Module {
   at::Tensor part_weight_, part_bias_;  ///< [6, D, P], [6, 1, P]
 };
 
-}  // namespace remomask
+}  // namespace remomask::retriever

@@ -8,14 +8,14 @@
 #include <cmath>
 #include <vector>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
 // The generic BLAS, column-major; row-major matrices are passed as transposes.
 extern "C" void sgemm_(const char* trans_a, const char* trans_b, const int* m, const int* n,
                        const int* k, const float* alpha, const float* a, const int* lda,
                        const float* b, const int* ldb, const float* beta, float* c, const int* ldc);
 
-namespace remomask {
+namespace remomask::retriever {
 
 namespace {
 
@@ -177,4 +177,4 @@ at::Tensor packed_attention(const at::Tensor& query_key_value, const std::vector
   return PackedAttentionFunction::apply(query_key_value, offsets, heads);
 }
 
-}  // namespace remomask
+}  // namespace remomask::retriever

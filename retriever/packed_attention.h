@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace remomask {
+namespace remomask::retriever {
 
 /// Softmax self-attention inside sequences of different lengths that lie one
 /// after the other, for G independent groups (CPU, with gradient).
@@ -16,4 +16,4 @@ namespace remomask {
 at::Tensor packed_attention(const at::Tensor& query_key_value, const std::vector<int64_t>& offsets,
                             int64_t heads);
 
-}  // namespace remomask
+}  // namespace remomask::retriever

@@ -5,7 +5,7 @@
 #include <torch/nn/modules/linear.h>
 #include <torch/nn/modules/normalization.h>
 
-namespace remomask {
+namespace remomask::retriever {
 
 /// Each row divided by its length.
 at::Tensor unit_rows(const at::Tensor& x);
@@ -22,4 +22,4 @@ class ProjectionHead final : public torch::nn::Module {
   torch::nn::Dropout dropout_;
 };
 
-}  // namespace remomask
+}  // namespace remomask::retriever

@@ -2,10 +2,10 @@
 
 #include <torch/utils.h>
 
-#include "base/error.h"
+#include "remomask/error.h"
 #include "retriever/retriever_model.h"
 
-namespace remomask {
+namespace remomask::retriever {
 
 struct Retriever::Impl {
   RetrieverConfig config;
@@ -13,7 +13,7 @@ struct Retriever::Impl {
   std::string hash;
 };
 
-Retriever::Retriever(const ModelStage& stage) : impl_(std::make_unique<Impl>()) {
+Retriever::Retriever(const nn::ModelStage& stage) : impl_(std::make_unique<Impl>()) {
   if (stage.kind != "retriever") {
     throw Error("a model stage '" + stage.kind + "' is no retriever; train one first");
   }
@@ -23,9 +23,9 @@ Retriever::Retriever(const ModelStage& stage) : impl_(std::make_unique<Impl>()) 
     throw Error(std::string("the retriever is not described completely: ") + error.what());
   }
   impl_->model = std::make_shared<RetrieverModel>(impl_->config);
-  load_module_tensors(*impl_->model, stage.tensors, "retriever");
+  nn::load_module_tensors(*impl_->model, stage.tensors, "retriever");
   impl_->model->eval();
-  impl_->hash = stage_hash(stage);
+  impl_->hash = nn::stage_hash(stage);
 }
 
 Retriever::~Retriever() = default;
@@ -35,16 +35,16 @@ Retriever& Retriever::operator=(Retriever&&) noexcept = default;
 TextEncoding Retriever::encode_text(const std::vector<std::string>& captions) const {
   at::NoGradGuard no_grad;
   if (captions.empty()) throw Error("there is no caption to encode");
-  const TokenBatch tokens = impl_->model->text_tower().tokenize(captions);
+  const encoders::TokenBatch tokens = impl_->model->text_tower().tokenize(captions);
   TextVectors vectors = impl_->model->encode_text(tokens.ids, tokens.mask);
   return {vectors.states, tokens.mask, vectors.query, vectors.parts};
 }
 
-MotionEncoding Retriever::encode_motion(const std::vector<const Features*>& clips) const {
+MotionEncoding Retriever::encode_motion(const std::vector<const motion::Features*>& clips) const {
   at::NoGradGuard no_grad;
   if (clips.empty()) throw Error("there is no motion to encode");
   std::vector<MotionCrop> crops;
-  for (const Features* clip : clips) crops.push_back(whole_clip(*clip));
+  for (const motion::Features* clip : clips) crops.push_back(whole_clip(*clip));
   MotionEncoder& encoder = impl_->model->motion_encoder();
   MotionVectors vectors = encoder.forward(encoder.patches(crops));
   return {vectors.global, vectors.parts};
@@ -53,7 +53,7 @@ MotionEncoding Retriever::encode_motion(const std::vector<const Features*>& clip
 int64_t Retriever::embedding_width() const { return impl_->config.embedding; }
 int64_t Retriever::part_width() const { return impl_->config.part_embedding; }
 int64_t Retriever::text_width() const { return impl_->model->text_tower().width(); }
-FeatureMode Retriever::feature_mode() const { return impl_->config.mode; }
+motion::FeatureMode Retriever::feature_mode() const { return impl_->config.mode; }
 const std::string& Retriever::hash() const { return impl_->hash; }
 
-}  // namespace remomask
+}  // namespace remomask::retriever

@@ -9,7 +9,7 @@
 #include "motion/features.h"
 #include "nn/model_file.h"
 
-namespace remomask {
+namespace remomask::retriever {
 
 struct TextEncoding {
   at::Tensor states;  ///< [B, S, text_width] token states of the text tower
@@ -29,19 +29,19 @@ struct MotionEncoding {
 class Retriever {
  public:
   /// Throws Error when the stage is no retriever or its tensors do not fit.
-  explicit Retriever(const ModelStage& stage);
+  explicit Retriever(const nn::ModelStage& stage);
   ~Retriever();
   Retriever(Retriever&&) noexcept;
   Retriever& operator=(Retriever&&) noexcept;
 
   TextEncoding encode_text(const std::vector<std::string>& captions) const;
   /// Features in this model's mode, unnormalised; any lengths of at least 4 rows.
-  MotionEncoding encode_motion(const std::vector<const Features*>& clips) const;
+  MotionEncoding encode_motion(const std::vector<const motion::Features*>& clips) const;
 
   int64_t embedding_width() const;  ///< E
   int64_t part_width() const;       ///< P
   int64_t text_width() const;       ///< width of TextEncoding::states
-  FeatureMode feature_mode() const;
+  motion::FeatureMode feature_mode() const;
   const std::string& hash() const;  ///< stage_hash: identity in Database::embeddings
 
  private:
@@ -49,4 +49,4 @@ class Retriever {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace remomask
+}  // namespace remomask::retriever

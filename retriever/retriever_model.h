@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "encoders/text_tower.h"
 #include "retriever/motion_encoder.h"
-#include "text/text_tower.h"
 
-namespace remomask {
+namespace remomask::retriever {
 
 struct TextVectors {
   at::Tensor states;  ///< [B, S, W]
@@ -22,17 +22,17 @@ class RetrieverModel final : public torch::nn::Module {
   explicit RetrieverModel(const RetrieverConfig& config);
 
   TextVectors encode_text(const at::Tensor& ids, const at::Tensor& mask);
-  TextTower& text_tower() { return *tower_; }
-  const TextTower& text_tower() const { return *tower_; }
+  encoders::TextTower& text_tower() { return *tower_; }
+  const encoders::TextTower& text_tower() const { return *tower_; }
   MotionEncoder& motion_encoder() { return *motion_; }
   const RetrieverConfig& config() const { return config_; }
 
  private:
   RetrieverConfig config_;
-  std::shared_ptr<TextTower> tower_;
+  std::shared_ptr<encoders::TextTower> tower_;
   std::shared_ptr<MotionEncoder> motion_;
   std::shared_ptr<ProjectionHead> text_head_;
   torch::nn::Linear text_parts_;
 };
 
-}  // namespace remomask
+}  // namespace remomask::retriever

@@ -3,10 +3,10 @@
 #include <array>
 #include <vector>
 
-#include "base/error.h"
+#include "remomask/error.h"
 #include "text/utf8.h"
 
-namespace remomask {
+namespace remomask::text {
 
 namespace {
 
@@ -127,4 +127,4 @@ std::string normalise_prompt(std::string_view text) {
   return words;
 }
 
-}  // namespace remomask
+}  // namespace remomask::text

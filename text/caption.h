@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace remomask {
+namespace remomask::text {
 
 /// Longest caption that is read, in bytes; the rest of a longer one is ignored.
 inline constexpr size_t kMostCaptionBytes = 8192;
@@ -19,4 +19,4 @@ std::string normalise_caption(std::string_view caption);
 /// The same for a text that a user gave: throws Error when nothing is left.
 std::string normalise_prompt(std::string_view text);
 
-}  // namespace remomask
+}  // namespace remomask::text

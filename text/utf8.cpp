@@ -1,6 +1,6 @@
 #include "text/utf8.h"
 
-namespace remomask {
+namespace remomask::text {
 
 std::vector<char32_t> decode_utf8(std::string_view text) {
   std::vector<char32_t> points;
@@ -50,4 +50,4 @@ void append_utf8(std::string& text, char32_t point) {
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::text

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "base/error.h"
+#include "remomask/error.h"
 #include "text/utf8.h"
 
-namespace remomask {
+namespace remomask::text {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::string WordPiece::decode(const std::vector<int64_t>& ids) const {
   return text;
 }
 
-}  // namespace remomask
+}  // namespace remomask::text

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace remomask {
+namespace remomask::text {
 
 /// Token ids of one caption: [CLS] words [SEP].
 struct TokenizedCaption {
@@ -53,4 +53,4 @@ std::vector<std::string> split_words(const std::string& caption);
 /// captions in any order give the equal vocabulary. Captions normalised.
 std::vector<std::string> train_wordpiece(const std::vector<std::string>& captions, int64_t size);
 
-}  // namespace remomask
+}  // namespace remomask::text

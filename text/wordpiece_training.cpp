@@ -3,11 +3,11 @@
 #include <set>
 #include <utility>
 
-#include "base/error.h"
+#include "remomask/error.h"
 #include "text/utf8.h"
 #include "text/wordpiece.h"
 
-namespace remomask {
+namespace remomask::text {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::vector<std::string> train_wordpiece(const std::vector<std::string>& caption
   return vocabulary;
 }
 
-}  // namespace remomask
+}  // namespace remomask::text

@@ -3,27 +3,27 @@
 #include <charconv>
 #include <filesystem>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "db/database.h"
-#include "evaluation/ablation_clips.h"
-#include "evaluation/ablation_report.h"
-#include "evaluation/ablation_run.h"
-#include "generator/variants.h"
-#include "retriever/retrieval_metrics.h"
-#include "tools/ablation_charts.h"
+#include "evaluation/retrieval_metrics.h"
+#include "lab/ablation_charts.h"
+#include "lab/ablation_clips.h"
+#include "lab/ablation_report.h"
+#include "lab/ablation_run.h"
+#include "lab/variants.h"
+#include "remomask/error.h"
 #include "tools/evaluate_command.h"
 #include "tools/markdown_section.h"
 #include "tools/program.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
 namespace fs = std::filesystem;
 
 struct AblateOptions {
-  AblationOptions ablation;
+  lab::AblationOptions ablation;
   std::string database, docs;
   EvaluatorOption evaluator;
   std::vector<std::string> sources, steps, batch;
@@ -57,9 +57,9 @@ std::string short_time(double seconds) {
   return seconds < 90 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60);
 }
 
-nlohmann::json plan_json(const AblationPlan& plan, const AblationClock& clock) {
+nlohmann::json plan_json(const lab::AblationPlan& plan, const lab::AblationClock& clock) {
   nlohmann::json jobs = nlohmann::json::array();
-  for (const AblationJob& job : plan.jobs) {
+  for (const lab::AblationJob& job : plan.jobs) {
     jobs.push_back({{"job", job.title},
                     {"file", job.file},
                     {"done", fs::exists(job.file)},
@@ -69,9 +69,9 @@ nlohmann::json plan_json(const AblationPlan& plan, const AblationClock& clock) {
   return {{"jobs", jobs}};
 }
 
-void print_plan(const AblationPlan& plan, const AblationClock& clock) {
+void print_plan(const lab::AblationPlan& plan, const lab::AblationClock& clock) {
   double left = 0;
-  for (const AblationJob& job : plan.jobs) {
+  for (const lab::AblationJob& job : plan.jobs) {
     const bool done = fs::exists(job.file);
     if (!done) left += clock.seconds(job);
     fmt::print("{} {:<44} {:>8}  {}\n", done ? "done" : "    ", job.title,
@@ -83,17 +83,18 @@ void print_plan(const AblationPlan& plan, const AblationClock& clock) {
 
 void write_results(const AblateOptions& options, Program& program, const nlohmann::json& document) {
   const fs::path folder = options.ablation.folder;
-  const std::string table = ablation_markdown(document);
+  const std::string table = lab::ablation_markdown(document);
   write_file_atomically((folder / "ablation.json").string(), document.dump(1) + "\n");
   write_file_atomically((folder / "ablation.md").string(), table);
-  draw_ablation_bars((folder / "ablation.png").string(), document);
-  const bool sweeps = draw_ablation_sweeps((folder / "ablation_sweeps.png").string(), document);
+  lab::draw_ablation_bars((folder / "ablation.png").string(), document);
+  const bool sweeps =
+      lab::draw_ablation_sweeps((folder / "ablation_sweeps.png").string(), document);
   if (!options.docs.empty()) {
     const fs::path docs = options.docs;
     std::string section = table + "\n![bars](ablation.png)\n";
-    draw_ablation_bars((docs / "ablation.png").string(), document);
+    lab::draw_ablation_bars((docs / "ablation.png").string(), document);
     if (sweeps) {
-      draw_ablation_sweeps((docs / "ablation_sweeps.png").string(), document);
+      lab::draw_ablation_sweeps((docs / "ablation_sweeps.png").string(), document);
       section += "\n![sweeps](ablation_sweeps.png)\n";
     }
     replace_section((docs / "results.md").string(), "ablation", section);
@@ -103,31 +104,33 @@ void write_results(const AblateOptions& options, Program& program, const nlohman
 }
 
 void run_ablate(AblateOptions& options, Program& program) {
-  AblationOptions& ablation = options.ablation;
+  lab::AblationOptions& ablation = options.ablation;
   if (ablation.variants.empty()) {
-    for (const ModelVariant& variant : model_variants()) ablation.variants.push_back(variant.name);
+    for (const lab::ModelVariant& variant : lab::model_variants())
+      ablation.variants.push_back(variant.name);
   }
   ablation.steps = stage_numbers(options.steps, "--steps");
   ablation.batch = stage_numbers(options.batch, "--batch");
-  const Database database(options.database, OpenMode::read_only);
-  const Evaluator judge = options.evaluator.load();
-  const AblationClips clips = load_ablation_clips(database, ablation.split, options.sources);
-  const std::string training =
-      clip_set_hash(clips.training.train) + clip_set_hash(clips.training.val);
-  const AblationPlan plan =
-      plan_ablation(ablation, {training, training + clip_set_hash(clips.asked) + judge.hash()});
+  const db::Database database(options.database, db::OpenMode::read_only);
+  const evaluation::Evaluator judge = options.evaluator.load();
+  const lab::AblationClips clips =
+      lab::load_ablation_clips(database, ablation.split, options.sources);
+  const std::string training = evaluation::clip_set_hash(clips.training.train) +
+                               evaluation::clip_set_hash(clips.training.val);
+  const lab::AblationPlan plan = lab::plan_ablation(
+      ablation, {training, training + evaluation::clip_set_hash(clips.asked) + judge.hash()});
   fs::create_directories(ablation.folder);
-  AblationClock clock((fs::path(ablation.folder) / "times.json").string());
+  lab::AblationClock clock((fs::path(ablation.folder) / "times.json").string());
   if (options.dry_run) {
     if (program.json) return program.print_json(plan_json(plan, clock));
     return print_plan(plan, clock);
   }
-  const AblationExam exam =
-      make_ablation_exam(judge, database, clips, ablation.prompts, ablation.prompt_seed);
-  run_ablation(plan, clips.training, exam, clock, program.monitor());
+  const lab::AblationExam exam =
+      lab::make_ablation_exam(judge, database, clips, ablation.prompts, ablation.prompt_seed);
+  lab::run_ablation(plan, clips.training, exam, clock, program.monitor());
   program.finish_progress();
   write_results(options, program,
-                ablation_document(
+                lab::ablation_document(
                     ablation, plan, exam.grade_real(),
                     {{"hash", judge.hash()},
                      {"file", fs::path(options.evaluator.evaluator_path()).filename().string()}}));
@@ -137,7 +140,7 @@ void run_ablate(AblateOptions& options, Program& program) {
 
 void register_ablate(CLI::App& app, Program& program) {
   auto options = std::make_shared<AblateOptions>();
-  AblationOptions& ablation = options->ablation;
+  lab::AblationOptions& ablation = options->ablation;
   CLI::App* command = add_command(
       app, "ablate", "train and measure variants of the model with equal budgets; resumes",
       "remomask ablate --db motions.sqlite --preset small --seeds 1,2,3 -o ablation");
@@ -149,7 +152,7 @@ void register_ablate(CLI::App& app, Program& program) {
       ->capture_default_str()
       ->check(CLI::IsMember({"tiny", "small", "base", "paper"}));
   std::string names;
-  for (const ModelVariant& variant : model_variants()) names += variant.name + ",";
+  for (const lab::ModelVariant& variant : lab::model_variants()) names += variant.name + ",";
   command
       ->add_option("--variants", ablation.variants,
                    "default: " + names.substr(0, names.size() - 1) +
@@ -182,4 +185,4 @@ void register_ablate(CLI::App& app, Program& program) {
   command->callback([options, &program] { run_ablate(*options, program); });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -5,18 +5,18 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/candidate_ranking.h"
-#include "motion/motion.h"
+#include "pipeline/candidate_ranking.h"
+#include "remomask/motion.h"
 #include "retriever/retriever.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 /// Candidates of one motion, of which the best is kept. One candidate is not scored.
 template <class Made>
 class CandidateList {
  public:
-  CandidateList(const Retriever& retriever, std::string prompt)
+  CandidateList(const retriever::Retriever& retriever, std::string prompt)
       : retriever_(retriever), prompt_(std::move(prompt)) {}
 
   void add(Made made, uint64_t seed, const Motion& motion, double bend = 0) {
@@ -30,12 +30,12 @@ class CandidateList {
   Made take_best() {
     if (made_.size() == 1) return std::move(made_.front());
     const std::vector<float> vector = text_vector(retriever_, prompt_);
-    std::vector<CandidateScore> scores;
+    std::vector<pipeline::CandidateScore> scores;
     for (size_t i = 0; i < made_.size(); ++i) {
-      scores.push_back(
-          score_candidate(retriever_, vector, motions_[i], humanml_skeleton(), bends_[i]));
+      scores.push_back(pipeline::score_candidate(retriever_, vector, motions_[i],
+                                                 humanml_skeleton(), bends_[i]));
     }
-    const std::vector<int> order = rank_candidates(scores);
+    const std::vector<int> order = pipeline::rank_candidates(scores);
     for (const int i : order) {
       nlohmann::json entry = scores[static_cast<size_t>(i)];
       entry["seed"] = seeds_[static_cast<size_t>(i)];
@@ -48,7 +48,7 @@ class CandidateList {
   const nlohmann::json& ranking() const { return ranking_; }
 
  private:
-  const Retriever& retriever_;
+  const retriever::Retriever& retriever_;
   std::string prompt_;
   std::vector<Made> made_;
   std::vector<uint64_t> seeds_;
@@ -57,4 +57,4 @@ class CandidateList {
   nlohmann::json ranking_ = nlohmann::json::array();
 };
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -4,9 +4,9 @@
 #include <charconv>
 #include <iterator>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 void ClipSelection::add(CLI::App& command) {
   command.add_option("clips", clips, "names or numbers of clips");
@@ -15,8 +15,8 @@ void ClipSelection::add(CLI::App& command) {
 
 bool ClipSelection::empty() const { return clips.empty() && filter.filter().empty(); }
 
-std::vector<int64_t> ClipSelection::ids(const Database& database) const {
-  std::vector<int64_t> passing = matching_clips(database, filter.filter());
+std::vector<int64_t> ClipSelection::ids(const db::Database& database) const {
+  std::vector<int64_t> passing = search::matching_clips(database, filter.filter());
   if (clips.empty()) return passing;
   std::vector<int64_t> named, both;
   for (const std::string& clip : clips) named.push_back(find_clip(database, clip));
@@ -27,14 +27,14 @@ std::vector<int64_t> ClipSelection::ids(const Database& database) const {
   return both;
 }
 
-std::vector<int64_t> ClipSelection::chosen_ids(const Database& database) const {
+std::vector<int64_t> ClipSelection::chosen_ids(const db::Database& database) const {
   if (empty()) {
     throw Error("no clip is chosen; name clips, or choose them with filters such as --tag");
   }
   return ids(database);
 }
 
-int64_t find_clip(const Database& database, const std::string& name_or_id) {
+int64_t find_clip(const db::Database& database, const std::string& name_or_id) {
   if (const auto id = database.find_name(name_or_id)) return *id;
   int64_t id = 0;
   const char* end = name_or_id.data() + name_or_id.size();
@@ -47,11 +47,11 @@ int64_t find_clip(const Database& database, const std::string& name_or_id) {
 nlohmann::json parse_labels(const std::vector<std::string>& pairs) {
   nlohmann::json labels = nlohmann::json::object();
   for (const std::string& pair : pairs) {
-    const LabelCondition label = parse_label_condition(pair);
+    const search::LabelCondition label = search::parse_label_condition(pair);
     const auto value = nlohmann::json::parse(label.value, nullptr, false);
     labels[label.key] = value.is_discarded() ? nlohmann::json(label.value) : value;
   }
   return labels;
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -6,7 +6,7 @@
 
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 /// Which clips a command is about: by name or number, by the filters of a
 /// search, or by both (those of the named that pass).
@@ -18,16 +18,16 @@ struct ClipSelection {
   bool empty() const;
   /// Ascending; all clips when nothing is selected. Throws Error for a clip that
   /// is not there.
-  std::vector<int64_t> ids(const Database& database) const;
+  std::vector<int64_t> ids(const db::Database& database) const;
   /// The same for commands that change clips: throws Error when nothing is selected.
-  std::vector<int64_t> chosen_ids(const Database& database) const;
+  std::vector<int64_t> chosen_ids(const db::Database& database) const;
 };
 
 /// The clip of this name, or else of this number. Throws Error when there is none.
-int64_t find_clip(const Database& database, const std::string& name_or_id);
+int64_t find_clip(const db::Database& database, const std::string& name_or_id);
 
 /// {"key=value", ...} -> labels. Numbers, true, false, null, lists and objects are
 /// read as JSON, other values are texts. Throws Error for what is no such pair.
 nlohmann::json parse_labels(const std::vector<std::string>& pairs);
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -5,24 +5,24 @@
 #include <filesystem>
 #include <map>
 
-#include "index/filter.h"
+#include "search/filter.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 nlohmann::json describe_database(const std::string& path) {
-  const Database database(path, OpenMode::read_only);
-  const ReadSnapshot snapshot(database);
+  const db::Database database(path, db::OpenMode::read_only);
+  const db::ReadSnapshot snapshot(database);
   std::map<std::string, int> splits, sources, licences, tags;
   size_t captions = 0;
   double seconds = 0;
   const auto clips = database.clips();
-  for (const Clip& clip : clips) {
+  for (const db::Clip& clip : clips) {
     ++splits[clip.split];
     ++sources[clip.source];
     ++licences[clip.licence];
     for (const std::string& tag : clip.tags) ++tags[tag];
     captions += clip.captions.size();
-    seconds += clip_seconds(clip);
+    seconds += search::clip_seconds(clip);
   }
   std::map<std::string, size_t> embedded;
   for (const std::string& retriever : database.retrievers()) {
@@ -42,14 +42,14 @@ nlohmann::json describe_database(const std::string& path) {
           {"embedded", embedded}};
 }
 
-nlohmann::json clip_json(const Clip& clip) {
+nlohmann::json clip_json(const db::Clip& clip) {
   return {{"id", clip.id},
           {"name", clip.name},
           {"source", clip.source},
           {"source_file", clip.source_file},
           {"start_frame", clip.start_frame},
           {"frames", clip.frames},
-          {"seconds", clip_seconds(clip)},
+          {"seconds", search::clip_seconds(clip)},
           {"speed", clip.speed},
           {"split", clip.split},
           {"licence", clip.licence},
@@ -75,4 +75,4 @@ void print_description(const nlohmann::json& document) {
   }
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <optional>
 
-#include "base/error.h"
-#include "db/add_files.h"
 #include "db/storing_database.h"
+#include "exchange/add_files.h"
+#include "remomask/error.h"
 #include "tools/clip_selection.h"
 #include "tools/db_commands.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -17,7 +17,7 @@ void register_add(CLI::App& group, Program& program) {
   struct Options {
     std::string database;
     std::vector<std::string> files, labels;
-    AddOptions add;
+    exchange::AddOptions add;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = add_command(
@@ -38,9 +38,9 @@ void register_add(CLI::App& group, Program& program) {
                       "name of a shipped map or a map file; default: found by joint names");
   command->callback([options, &program] {
     options->add.labels = parse_labels(options->labels);
-    StoringDatabase storing(options->database);
-    Database& database = *storing;
-    const AddReport report = add_files(database, options->files, options->add);
+    db::StoringDatabase storing(options->database);
+    db::Database& database = *storing;
+    const exchange::AddReport report = exchange::add_files(database, options->files, options->add);
     nlohmann::json clips = nlohmann::json::array(), rejected = nlohmann::json::array();
     for (const auto& [id, name] : report.clips) clips.push_back({{"id", id}, {"name", name}});
     for (const auto& entry : report.rejected) {
@@ -70,8 +70,8 @@ struct TagOptions {
     return added.empty() && dropped.empty() && labels.empty() && captions.empty() && !split &&
            !licence;
   }
-  ClipChanges changes(const Clip& clip) const {
-    ClipChanges changes;
+  db::ClipChanges changes(const db::Clip& clip) const {
+    db::ClipChanges changes;
     std::vector<std::string> tags = clip.tags;
     tags.insert(tags.end(), added.begin(), added.end());
     std::erase_if(tags, [this](const std::string& tag) {
@@ -103,7 +103,7 @@ void register_tag(CLI::App& group, Program& program) {
                  "new caption in the place of all old ones");
   command->callback([options, &program] {
     if (options->empty()) throw Error("nothing is to be changed; say --add, --drop or --set-...");
-    Database database(options->database, OpenMode::read_write);
+    db::Database database(options->database, db::OpenMode::read_write);
     database.begin();
     const auto ids = options->selection.chosen_ids(database);
     int64_t changed = 0;
@@ -131,7 +131,7 @@ void register_remove(CLI::App& group, Program& program) {
   options->selection.add(*command);
   command->add_flag("--yes", options->yes, "needed when more than one clip is meant");
   command->callback([options, &program] {
-    Database database(options->database, OpenMode::read_write);
+    db::Database database(options->database, db::OpenMode::read_write);
     database.begin();
     const auto ids = options->selection.chosen_ids(database);
     if (ids.size() > 1 && !options->yes) {
@@ -158,4 +158,4 @@ void register_db_change(CLI::App& group, Program& program) {
   register_remove(group, program);
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -1,6 +1,6 @@
 #include "tools/db_commands.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 void register_db(CLI::App& app, Program& program) {
   CLI::App* group = add_command(app, "db", "look after a motion database: list, change, check ...",
@@ -12,4 +12,4 @@ void register_db(CLI::App& app, Program& program) {
   register_db_upkeep(*group, program);
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

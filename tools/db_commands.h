@@ -4,7 +4,7 @@
 
 #include "tools/program.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 // Sub-commands of `remomask db`; `group` is that command.
 void register_db_list(CLI::App& group, Program& program);      // list, show
@@ -13,4 +13,4 @@ void register_db_exchange(CLI::App& group, Program& program);  // merge, export
 void register_db_upkeep(CLI::App& group,
                         Program& program);  // info, check, snapshot, restore, upgrade
 
-}  // namespace remomask
+}  // namespace remomask::tools

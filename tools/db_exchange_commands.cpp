@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include "db/export.h"
 #include "db/merge.h"
+#include "exchange/export.h"
 #include "tools/clip_selection.h"
 #include "tools/db_commands.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -26,9 +26,9 @@ void register_merge(CLI::App& group, Program& program) {
   command->add_option("database", options->database, "database file that grows")->required();
   command->add_option("other", options->other, "database file that is read")->required();
   command->callback([options, &program] {
-    Database database(options->database, OpenMode::read_write);
-    const Database other(options->other, OpenMode::read_only);
-    const MergeReport report = merge_database(database, other, program.monitor());
+    db::Database database(options->database, db::OpenMode::read_write);
+    const db::Database other(options->other, db::OpenMode::read_only);
+    const db::MergeReport report = db::merge_database(database, other, program.monitor());
     program.finish_progress();
     if (program.json) {
       return program.print_json({{"clips", report.clips},
@@ -52,7 +52,7 @@ void register_merge(CLI::App& group, Program& program) {
 void register_export(CLI::App& group, Program& program) {
   struct Options {
     std::string database, folder;
-    ExportFormat format = ExportFormat::npy;
+    exchange::ExportFormat format = exchange::ExportFormat::npy;
     ClipSelection selection;
   };
   auto options = std::make_shared<Options>();
@@ -62,16 +62,16 @@ void register_export(CLI::App& group, Program& program) {
   command->add_option("database", options->database, "database file")->required();
   command->add_option("folder", options->folder, "new or empty folder")->required();
   options->selection.add(*command);
-  const std::map<std::string, ExportFormat> formats = {{"bvh", ExportFormat::bvh},
-                                                       {"npy", ExportFormat::npy}};
+  const std::map<std::string, exchange::ExportFormat> formats = {
+      {"bvh", exchange::ExportFormat::bvh}, {"npy", exchange::ExportFormat::npy}};
   command
       ->add_option("--format", options->format,
                    "npy (default) keeps the very positions, bvh opens in other programs")
       ->transform(CLI::CheckedTransformer(formats));
   command->callback([options, &program] {
-    const Database database(options->database, OpenMode::read_only);
+    const db::Database database(options->database, db::OpenMode::read_only);
     const auto ids = options->selection.ids(database);
-    export_clips(database, ids, options->folder, options->format, program.monitor());
+    exchange::export_clips(database, ids, options->folder, options->format, program.monitor());
     program.finish_progress();
     if (program.json) {
       return program.print_json({{"folder", options->folder}, {"clips", ids.size()}});
@@ -87,4 +87,4 @@ void register_db_exchange(CLI::App& group, Program& program) {
   register_export(group, program);
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -4,15 +4,15 @@
 #include "tools/database_info.h"
 #include "tools/db_commands.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
-void print_clip_line(const Clip& clip) {
+void print_clip_line(const db::Clip& clip) {
   std::string tags;
   for (const std::string& tag : clip.tags) tags += " [" + tag + "]";
-  fmt::print("{:6}  {:5.1f} s  {:4.1f} m/s  {:<5}  {:<32}{} {}\n", clip.id, clip_seconds(clip),
-             clip.speed, clip.split, clip.name, tags,
+  fmt::print("{:6}  {:5.1f} s  {:4.1f} m/s  {:<5}  {:<32}{} {}\n", clip.id,
+             search::clip_seconds(clip), clip.speed, clip.split, clip.name, tags,
              clip.captions.empty() ? "" : clip.captions.front());
 }
 
@@ -32,14 +32,14 @@ void register_list(CLI::App& group, Program& program) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command->callback([options, &program] {
-    const Database database(options->database, OpenMode::read_only);
-    const ReadSnapshot snapshot(database);
-    const auto ids = matching_clips(database, options->filter.filter());
+    const db::Database database(options->database, db::OpenMode::read_only);
+    const db::ReadSnapshot snapshot(database);
+    const auto ids = search::matching_clips(database, options->filter.filter());
     size_t shown = ids.size();
     if (options->limit > 0) shown = std::min(shown, static_cast<size_t>(options->limit));
     nlohmann::json clips = nlohmann::json::array();
     for (size_t i = 0; i < shown; ++i) {
-      const Clip clip = database.clip(ids[i]);
+      const db::Clip clip = database.clip(ids[i]);
       if (program.json) {
         clips.push_back(clip_json(clip));
       } else {
@@ -62,8 +62,8 @@ void register_show(CLI::App& group, Program& program) {
   command->add_option("database", options->database, "database file")->required();
   command->add_option("clips", options->clips, "names or numbers of clips")->required();
   command->callback([options, &program] {
-    const Database database(options->database, OpenMode::read_only);
-    const ReadSnapshot snapshot(database);
+    const db::Database database(options->database, db::OpenMode::read_only);
+    const db::ReadSnapshot snapshot(database);
     nlohmann::json clips = nlohmann::json::array();
     for (const std::string& name : options->clips) {
       const int64_t id = find_clip(database, name);
@@ -90,4 +90,4 @@ void register_db_list(CLI::App& group, Program& program) {
   register_show(group, program);
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

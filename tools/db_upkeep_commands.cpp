@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "db/check.h"
 #include "db/snapshot.h"
 #include "db/upgrade.h"
+#include "remomask/error.h"
 #include "tools/database_info.h"
 #include "tools/db_commands.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -29,10 +29,10 @@ void register_check(CLI::App& group, Program& program) {
                                   "remomask db check motions.sqlite");
   command->add_option("database", *path, "database file")->required();
   command->callback([path, &program] {
-    const CheckReport report = check_database(*path, program.monitor());
+    const db::CheckReport report = db::check_database(*path, program.monitor());
     program.finish_progress();
     nlohmann::json defects = nlohmann::json::array();
-    for (const Defect& defect : report.defects) {
+    for (const db::Defect& defect : report.defects) {
       defects.push_back(
           {{"clip_id", defect.clip_id}, {"clip", defect.clip}, {"what", defect.what}});
       if (program.json) continue;
@@ -70,7 +70,7 @@ void register_snapshot(CLI::App& group, Program& program) {
   command->add_option("target", options->target, "new file")->required();
   command->add_flag("--force", options->force, "replace the file if it exists");
   command->callback([options, &program] {
-    snapshot_database(options->database, options->target, options->force, program.monitor());
+    db::snapshot_database(options->database, options->target, options->force, program.monitor());
     program.finish_progress();
     if (program.json) return program.print_json({{"snapshot", options->target}});
     fmt::print("{}: written\n", options->target);
@@ -89,8 +89,8 @@ void register_restore(CLI::App& group, Program& program) {
   command->add_option("database", options->database, "database file")->required();
   command->add_flag("--force", options->force, "replace the database if it exists");
   command->callback([options, &program] {
-    const RestoreReport report =
-        restore_database(options->snapshot, options->database, options->force, program.monitor());
+    const db::RestoreReport report = db::restore_database(options->snapshot, options->database,
+                                                          options->force, program.monitor());
     program.finish_progress();
     if (program.json) {
       return program.print_json({{"database", options->database}, {"set_aside", report.set_aside}});
@@ -109,7 +109,7 @@ void register_upgrade(CLI::App& group, Program& program) {
                                   "remomask db upgrade motions.sqlite");
   command->add_option("database", *path, "database file")->required();
   command->callback([path, &program] {
-    const UpgradeReport report = upgrade_database(*path);
+    const db::UpgradeReport report = db::upgrade_database(*path);
     if (program.json) {
       return program.print_json({{"file", *path},
                                  {"version_before", report.version_before},
@@ -133,4 +133,4 @@ void register_db_upkeep(CLI::App& group, Program& program) {
   register_upgrade(group, program);
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -4,28 +4,28 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.h"
-#include "generator/editing.h"
-#include "motion/motion_file.h"
+#include "drawing/contact_sheet.h"
+#include "formats/motion_file.h"
+#include "pipeline/editing.h"
+#include "remomask/error.h"
 #include "text/caption.h"
 #include "tools/candidate_list.h"
-#include "tools/contact_sheet.h"
 #include "tools/edit_spans.h"
 #include "tools/generation_options.h"
 #include "tools/output_path.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
 /// What was made anew: a list of {part, first, last} in frames, last exclusive.
-nlohmann::json cells_json(const PartMask& mask) {
-  const BodyPartMap& map = body_parts(humanml_skeleton());
+nlohmann::json cells_json(const motion::PartMask& mask) {
+  const motion::BodyPartMap& map = motion::body_parts(humanml_skeleton());
   nlohmann::json list = nlohmann::json::array();
-  for (int part = 0; part < kBodyParts; ++part) {
-    for (const FrameRun& run : part_runs(mask, part)) {
+  for (int part = 0; part < motion::kBodyParts; ++part) {
+    for (const motion::FrameRun& run : motion::part_runs(mask, part)) {
       list.push_back({{"part", map.names[static_cast<size_t>(part)]},
                       {"first", run.first},
                       {"last", run.last}});
@@ -44,7 +44,7 @@ void register_edit(CLI::App& app, Program& program) {
     FileOptions files;
     FilterOptions filter;
     GenerationOptions generation;
-    EditOptions edit;
+    pipeline::EditOptions edit;
     uint64_t seed = 0;
     int count = 1;
   };
@@ -86,53 +86,53 @@ void register_edit(CLI::App& app, Program& program) {
   options->generation.add(*command);
   command->callback([options, &program] {
     require_writable_output(options->output);
-    normalise_prompt(options->prompt);
-    MotionFileOptions reading;
+    text::normalise_prompt(options->prompt);
+    formats::MotionFileOptions reading;
     reading.canonical = false;
-    const Motion original = load_motion_file(options->input, reading).motion;
-    const std::vector<EditSpan> spans =
+    const Motion original = formats::load_motion_file(options->input, reading).motion;
+    const std::vector<pipeline::EditSpan> spans =
         parse_edit_spans(options->spans, options->parts, options->cells, original.frames);
-    EditOptions edit = options->edit;
+    pipeline::EditOptions edit = options->edit;
     edit.extend_frames = static_cast<int>(std::lround(options->extend * 20));
     if (spans.empty() && edit.extend_frames == 0) {
       throw Error("there is nothing to edit; name a --span, --parts, --cells or --extend");
     }
     const Monitor monitor = program.monitor();
     const std::string model_path = options->files.model_path();
-    const GenerationWorkspace workspace(load_model(model_path), model_path, options->files,
+    const GenerationWorkspace workspace(nn::load_model(model_path), model_path, options->files,
                                         options->generation);
     const Evidence found = workspace.find_evidence(options->prompt, options->filter.filter());
     const nlohmann::json evidence = evidence_list(found);
     nlohmann::json results = nlohmann::json::array();
-    std::vector<SheetRow> rows = {{"before", options->input, original}};
+    std::vector<drawing::SheetRow> rows = {{"before", options->input, original}};
     for (int i = 0; i < options->count; ++i) {
       if (monitor.stop_requested()) {
         throw Interrupted(fmt::format("stopped; {} of {} motions are stored", i, options->count));
       }
       const auto start = std::chrono::steady_clock::now();
       const uint64_t seed = options->seed + static_cast<uint64_t>(i);
-      CandidateList<Edited> candidates(workspace.search().retriever(), options->prompt);
+      CandidateList<pipeline::Edited> candidates(workspace.search().retriever(), options->prompt);
       for (const uint64_t number : candidate_seeds(seed, workspace.best_of())) {
         edit.generate = workspace.generate_options(number);
-        Edited one = edit_motion(workspace.generator(), original, spans, options->prompt,
-                                 found.motions, edit);
+        pipeline::Edited one = pipeline::edit_motion(workspace.generator(), original, spans,
+                                                     options->prompt, found.motions, edit);
         const Motion motion = one.motion;
         const double bend = one.splice.path_shift + one.splice.path_turn;
         candidates.add(std::move(one), number, motion, bend);
       }
-      const Edited made = candidates.take_best();
+      const pipeline::Edited made = candidates.take_best();
       const double seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       const std::string path = sample_path(options->output, i, options->count);
       const nlohmann::json cells = cells_json(made.mask);
-      save_motion_file(path, made.motion,
-                       {{"prompt", options->prompt},
-                        {"edited", options->input},
-                        {"cells", cells.dump()},
-                        {"seed", std::to_string(seed)},
-                        {"generator", workspace.identity()},
-                        {"database", workspace.search().database().uuid()},
-                        {"evidence", evidence.dump()}});
+      formats::save_motion_file(path, made.motion,
+                                {{"prompt", options->prompt},
+                                 {"edited", options->input},
+                                 {"cells", cells.dump()},
+                                 {"seed", std::to_string(seed)},
+                                 {"generator", workspace.identity()},
+                                 {"database", workspace.search().database().uuid()},
+                                 {"evidence", evidence.dump()}});
       const double turn = made.splice.path_turn * 180 / std::numbers::pi;
       results.push_back({{"file", path},
                          {"prompt", options->prompt},
@@ -158,11 +158,11 @@ void register_edit(CLI::App& app, Program& program) {
       }
     }
     if (!options->sheet.empty()) {
-      write_contact_sheet(options->sheet, rows);
+      drawing::write_contact_sheet(options->sheet, rows);
       if (!program.json) fmt::print("{}: contact sheet\n", options->sheet);
     }
     program.print_json({{"motions", results}});
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string_view>
 
-#include "base/error.h"
-#include "index/query.h"
+#include "remomask/error.h"
+#include "search/query.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -40,12 +40,12 @@ int parse_time(std::string_view text, const std::string& span, int frames) {
   return static_cast<int>(std::lround(seconds * kEditFps));
 }
 
-EditSpan parse_span(const std::string& text, int frames) {
+pipeline::EditSpan parse_span(const std::string& text, int frames) {
   const size_t dash = text.find('-', 1);
   if (dash == std::string::npos) {
     throw Error(fmt::format("span \"{}\" has no end; write BEGIN-END in seconds", text));
   }
-  EditSpan span;
+  pipeline::EditSpan span;
   span.first = parse_time(std::string_view(text).substr(0, dash), text, frames);
   span.last = parse_time(std::string_view(text).substr(dash + 1), text, frames);
   if (span.first < 0 || span.last > frames || span.first >= span.last) {
@@ -57,7 +57,7 @@ EditSpan parse_span(const std::string& text, int frames) {
 }
 
 void add_spans(const std::string& text, const std::vector<int>& parts, int frames,
-               std::vector<EditSpan>& result) {
+               std::vector<pipeline::EditSpan>& result) {
   for (const std::string& item : split_list(text, ',')) {
     result.push_back(parse_span(item, frames));
     result.back().parts = parts;
@@ -66,11 +66,12 @@ void add_spans(const std::string& text, const std::vector<int>& parts, int frame
 
 }  // namespace
 
-std::vector<EditSpan> parse_edit_spans(const std::string& spans,
-                                       const std::vector<std::string>& parts,
-                                       const std::vector<std::string>& cells, int frames) {
-  std::vector<EditSpan> result;
-  const std::vector<int> chosen = parse_body_parts(parts);
+std::vector<pipeline::EditSpan> parse_edit_spans(const std::string& spans,
+                                                 const std::vector<std::string>& parts,
+                                                 const std::vector<std::string>& cells,
+                                                 int frames) {
+  std::vector<pipeline::EditSpan> result;
+  const std::vector<int> chosen = search::parse_body_parts(parts);
   if (!spans.empty()) {
     add_spans(spans, chosen, frames, result);
   } else if (!chosen.empty()) {
@@ -81,9 +82,9 @@ std::vector<EditSpan> parse_edit_spans(const std::string& spans,
     const std::vector<std::string> named = colon == std::string::npos
                                                ? std::vector<std::string>()
                                                : split_list(cell.substr(colon + 1), ',');
-    add_spans(cell.substr(0, colon), parse_body_parts(named), frames, result);
+    add_spans(cell.substr(0, colon), search::parse_body_parts(named), frames, result);
   }
   return result;
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

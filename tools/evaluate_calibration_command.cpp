@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "db/database.h"
-#include "retriever/calibration_hits.h"
+#include "evaluation/calibration_hits.h"
+#include "evaluation/reliability_diagram.h"
 #include "tools/evaluate_command.h"
-#include "tools/reliability_diagram.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -15,16 +15,16 @@ constexpr const char* kCalibrationRule =
     "all captions, their ten most similar clips of the whole split; right: the same group, the "
     "identical normalised caption, or the same labels content and style";
 
-double share_right(const JudgedHits& hits) {
+double share_right(const evaluation::JudgedHits& hits) {
   const auto right = std::count(hits.right.begin(), hits.right.end(), true);
   return static_cast<double>(right) / static_cast<double>(hits.right.size());
 }
 
 /// (1 + cosine) / 2 taken for a share: what there is without a calibration.
-double uncalibrated_error(const JudgedHits& hits) {
+double uncalibrated_error(const evaluation::JudgedHits& hits) {
   std::vector<double> shares;
   for (const double similarity : hits.similarities) shares.push_back((1 + similarity) / 2);
-  return expected_calibration_error(reliability_bins(shares, hits.right));
+  return search::expected_calibration_error(search::reliability_bins(shares, hits.right));
 }
 
 }  // namespace
@@ -48,31 +48,35 @@ void register_evaluate_calibration(CLI::App& parent, Program& program) {
   command->callback([options, &program] {
     const EvaluationInput& input = options->input;
     const std::string model_path = input.files.model_path();
-    const Retriever retriever(load_stage(model_path, "retriever"));
+    const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
     const auto hits_of = [&](const std::string& split) {
       const auto clips = input.load(split, retriever.feature_mode());
-      return judge_hits(encode_split(retriever, clips, true, program.monitor()), clips);
+      return evaluation::judge_hits(
+          evaluation::encode_split(retriever, clips, true, program.monitor()), clips);
     };
-    const JudgedHits fitted = hits_of(input.split), checked = hits_of(options->check);
+    const evaluation::JudgedHits fitted = hits_of(input.split), checked = hits_of(options->check);
     program.finish_progress();
-    const Calibration calibration = fit_calibration(fitted.similarities, fitted.right);
-    const auto bins = reliability_bins(predicted_shares(calibration, checked), checked.right);
-    const double error = expected_calibration_error(bins);
+    const search::Calibration calibration =
+        search::fit_calibration(fitted.similarities, fitted.right);
+    const auto bins =
+        search::reliability_bins(evaluation::predicted_shares(calibration, checked), checked.right);
+    const double error = search::expected_calibration_error(bins);
     if (options->store) {
-      Database database(input.files.database_path(), OpenMode::read_write);
-      database.set_fact(calibration_fact(retriever.hash()), nlohmann::json(calibration).dump());
+      db::Database database(input.files.database_path(), db::OpenMode::read_write);
+      database.set_fact(search::calibration_fact(retriever.hash()),
+                        nlohmann::json(calibration).dump());
     }
     if (!options->plot.empty()) {
-      write_reliability_diagram(options->plot,
-                                {fmt::format("Calibration of search: fitted on {}, checked on {}",
-                                             input.split, options->check),
-                                 fmt::format("{} and {} hits; expected calibration error {:.3f}",
-                                             fitted.right.size(), checked.right.size(), error),
-                                 calibration, bins, checked.similarities});
+      evaluation::write_reliability_diagram(
+          options->plot, {fmt::format("Calibration of search: fitted on {}, checked on {}",
+                                      input.split, options->check),
+                          fmt::format("{} and {} hits; expected calibration error {:.3f}",
+                                      fitted.right.size(), checked.right.size(), error),
+                          calibration, bins, checked.similarities});
     }
     if (program.json) {
       nlohmann::json reliability = nlohmann::json::array();
-      for (const ReliabilityBin& bin : bins) {
+      for (const search::ReliabilityBin& bin : bins) {
         reliability.push_back({{"low", bin.low},
                                {"high", bin.high},
                                {"predicted", bin.predicted},
@@ -96,7 +100,7 @@ void register_evaluate_calibration(CLI::App& parent, Program& program) {
         options->check, checked.right.size(), 100 * share_right(checked));
     fmt::print("expected calibration error {:.3f} ({:.3f} of (1 + similarity) / 2 as the share)\n",
                error, uncalibrated_error(checked));
-    for (const ReliabilityBin& bin : bins) {
+    for (const search::ReliabilityBin& bin : bins) {
       if (bin.count == 0) continue;
       fmt::print("  predicted {:3.0f} to {:3.0f} %: {:5.1f} %, right {:5.1f} %  ({} hits)\n",
                  100 * bin.low, 100 * bin.high, 100 * bin.predicted, 100 * bin.right, bin.count);
@@ -114,4 +118,4 @@ void register_evaluate_calibration(CLI::App& parent, Program& program) {
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -1,10 +1,10 @@
 #include "tools/evaluate_command.h"
 
-#include "base/error.h"
 #include "db/database.h"
-#include "retriever/retrieval_metrics.h"
+#include "evaluation/retrieval_metrics.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 void EvaluationInput::add(CLI::App& command) {
   files.add_model(command);
@@ -17,16 +17,16 @@ void EvaluationInput::add_clips(CLI::App& command) {
   command.add_option("--source", sources, "only these data sets (repeatable)");
 }
 
-std::vector<TrainingClip> EvaluationInput::load(const std::string& wanted_split,
-                                                FeatureMode mode) const {
+std::vector<db::TrainingClip> EvaluationInput::load(const std::string& wanted_split,
+                                                    motion::FeatureMode mode) const {
   const std::string path = files.database_path();
-  const Database database(path, OpenMode::read_only);
-  TrainingSetOptions options;
+  const db::Database database(path, db::OpenMode::read_only);
+  db::TrainingSetOptions options;
   options.splits = {wanted_split};
   options.add_mirrored = false;
   options.sources = sources;
   options.mode = mode;
-  auto clips = load_training_set(database, options);
+  auto clips = db::load_training_set(database, options);
   if (clips.empty()) {
     throw FileError(
         path, 0,
@@ -36,10 +36,10 @@ std::vector<TrainingClip> EvaluationInput::load(const std::string& wanted_split,
 }
 
 nlohmann::json EvaluationInput::stamped(nlohmann::json document,
-                                        const std::vector<TrainingClip>& clips) const {
+                                        const std::vector<db::TrainingClip>& clips) const {
   document["model"] = files.model_path();
   document["split"] = split;
-  document["split_hash"] = clip_set_hash(clips);
+  document["split_hash"] = evaluation::clip_set_hash(clips);
   return document;
 }
 
@@ -65,4 +65,4 @@ void register_evaluate(CLI::App& app, Program& program) {
   register_evaluate_generation(*command, program);
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -9,7 +9,7 @@
 #include "tools/program.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 /// --model, --db, --split and --source: what is measured.
 struct EvaluationInput {
@@ -22,10 +22,11 @@ struct EvaluationInput {
   void add_clips(CLI::App& command);
   /// Clips of `wanted_split` of the sources, without mirror twins that are not
   /// stored. Throws FileError when there are none.
-  std::vector<TrainingClip> load(const std::string& wanted_split, FeatureMode mode) const;
-  std::vector<TrainingClip> load(FeatureMode mode) const { return load(split, mode); }
+  std::vector<db::TrainingClip> load(const std::string& wanted_split,
+                                     motion::FeatureMode mode) const;
+  std::vector<db::TrainingClip> load(motion::FeatureMode mode) const { return load(split, mode); }
   /// The document of --json with what was measured: model, split, hash of its clips.
-  nlohmann::json stamped(nlohmann::json document, const std::vector<TrainingClip>& clips) const;
+  nlohmann::json stamped(nlohmann::json document, const std::vector<db::TrainingClip>& clips) const;
 };
 
 /// --evaluator: the text-motion evaluator, by default the shipped one.
@@ -34,7 +35,7 @@ struct EvaluatorOption {
 
   void add(CLI::App& command);
   std::string evaluator_path() const;
-  Evaluator load() const { return load_evaluator(evaluator_path()); }
+  evaluation::Evaluator load() const { return evaluation::load_evaluator(evaluator_path()); }
 };
 
 /// The sub-commands of `remomask evaluate`.
@@ -46,4 +47,4 @@ void register_evaluate_evaluator(CLI::App& parent, Program& program);
 void register_evaluate_tokenizer(CLI::App& parent, Program& program);
 void register_evaluate_generation(CLI::App& parent, Program& program);
 
-}  // namespace remomask
+}  // namespace remomask::tools

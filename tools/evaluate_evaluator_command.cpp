@@ -5,24 +5,25 @@
 
 #include "evaluation/evaluator_quality.h"
 #include "evaluation/side_rule.h"
-#include "generator/tokenizer_metrics.h"
+#include "evaluation/tokenizer_metrics.h"
 #include "tools/evaluate_command.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
 struct EvaluateEvaluatorOptions : EvaluationInput {
   EvaluatorOption evaluator;
-  GenerationFigureOptions figures;
+  evaluation::GenerationFigureOptions figures;
 };
 
-void print_quality(const EvaluatorQuality& quality) {
-  for (const EvaluatorSubset& subset : quality.subsets) {
+void print_quality(const evaluation::EvaluatorQuality& quality) {
+  for (const evaluation::EvaluatorSubset& subset : quality.subsets) {
     fmt::print("{} ({} clips): nearest clip of another group has the content {:.1f} %\n",
                subset.name, subset.captions.motions, 100 * subset.content.accuracy);
     for (const auto& [name, figures] :
-         {std::pair<const char*, const GenerationFigures&>{"distinct captions", subset.captions},
+         {std::pair<const char*, const evaluation::GenerationFigures&>{"distinct captions",
+                                                                       subset.captions},
           {"distinct labels", subset.labels}}) {
       const auto& top = figures.r_precision;
       if (std::isnan(top[0].mean)) {
@@ -59,25 +60,25 @@ void register_evaluate_evaluator(CLI::App& parent, Program& program) {
       ->capture_default_str()
       ->check(CLI::Range(2, 1000));
   command->callback([options, &program] {
-    const Evaluator evaluator = options->evaluator.load();
+    const evaluation::Evaluator evaluator = options->evaluator.load();
     const auto clips = options->load(evaluator.feature_mode());
     auto quality =
         measure_evaluator(evaluator, clips, options->load("train", evaluator.feature_mode()),
                           options->load("val", evaluator.feature_mode()), options->figures);
-    const Database database(options->files.database_path(), OpenMode::read_only);
+    const db::Database database(options->files.database_path(), db::OpenMode::read_only);
     for (const char* split : {"train", "val", "test"}) {
-      quality.sides[split] = count_real_sides(database, split);
+      quality.sides[split] = evaluation::count_real_sides(database, split);
     }
     if (!program.json) return print_quality(quality);
     nlohmann::json document = quality;
     document["model"] = options->evaluator.evaluator_path();
     document["evaluator"] = evaluator.hash();
     document["split"] = options->split;
-    document["split_hash"] = clip_set_hash(clips);
+    document["split_hash"] = evaluation::clip_set_hash(clips);
     document["draws"] = options->figures.draws;
     document["batch"] = options->figures.batch;
     program.print_json(document);
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

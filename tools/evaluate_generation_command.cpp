@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "evaluation/generation_report.h"
-#include "evaluation/motion_embedding.h"
-#include "generator/pipeline.h"
+#include "pipeline/motion_embedding.h"
+#include "pipeline/motion_generator.h"
 #include "tools/evaluate_command.h"
 #include "tools/generation_options.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -17,17 +17,18 @@ struct EvaluateGenerationOptions {
   FileOptions files;
   EvaluatorOption evaluator;
   GenerationOptions generation;
-  GenerationRunOptions run;
-  GenerationReportOptions report;
+  evaluation::GenerationRunOptions run;
+  evaluation::GenerationReportOptions report;
   std::string judge = "evaluator";
 };
 
-std::string figure_text(const Figure& figure) {
+std::string figure_text(const evaluation::Figure& figure) {
   return std::isnan(figure.mean) ? "-"
                                  : fmt::format("{:.3f} +-{:.3f}", figure.mean, figure.interval);
 }
 
-void print_row(const GenerationSubset& subset, const char* name, const MotionFigures& figures) {
+void print_row(const evaluation::GenerationSubset& subset, const char* name,
+               const evaluation::MotionFigures& figures) {
   const auto& top = figures.captions.r_precision;
   const auto& by_labels = figures.labels.r_precision;
   fmt::print("{:<6}{:<10}{:>7.1f}  {:>14}  {:>14}  {:>14}  {:>14}  {:>16}  {:>16}  {:>15}\n",
@@ -37,9 +38,10 @@ void print_row(const GenerationSubset& subset, const char* name, const MotionFig
              figure_text(figures.captions.diversity));
 }
 
-void print_body(const GenerationSubset& subset, const char* name, const MotionFigures& figures) {
-  const PhysicalMetrics& body = figures.physical.values;
-  const auto side = [](const SideCount& count) {
+void print_body(const evaluation::GenerationSubset& subset, const char* name,
+                const evaluation::MotionFigures& figures) {
+  const pipeline::PhysicalMetrics& body = figures.physical.values;
+  const auto side = [](const evaluation::SideCount& count) {
     return count.asked == 0 ? std::string("-") : fmt::format("{} of {}", count.right, count.asked);
   };
   fmt::print(
@@ -49,7 +51,7 @@ void print_body(const GenerationSubset& subset, const char* name, const MotionFi
       figures.physical.not_finite);
 }
 
-void print_report(const GenerationReport& report) {
+void print_report(const evaluation::GenerationReport& report) {
   const nlohmann::json& protocol = report.protocol;
   fmt::print(
       "protocol {}: {} prompts of {}, drawn {}, {} generations each, {} draws of batches of {}; "
@@ -62,14 +64,14 @@ void print_report(const GenerationReport& report) {
       protocol.at("evaluator").get<std::string>());
   fmt::print("{:<16}{:>7}  {:>14}  {:>14}  {:>14}  {:>14}  {:>16}  {:>16}  {:>15}\n", "prompts",
              "content", "R@1", "R@2", "R@3", "R@3, labels", "FID", "MM-Dist", "Diversity");
-  for (const GenerationSubset& subset : report.subsets) {
+  for (const evaluation::GenerationSubset& subset : report.subsets) {
     print_row(subset, "generated", subset.generated);
     print_row(subset, "real", subset.real);
   }
   fmt::print("MultiModality {}\n\n", figure_text(report.multimodality));
   fmt::print("{:<16}{:>11}  {:>11}  {:>10}  {:>9}  {:>9}  {:>8}  {:>8}  {:>7}\n", "prompts", "hand",
              "turn", "skate m/s", "bones %", "deepest cm", "float %", "jerk", "broken");
-  for (const GenerationSubset& subset : report.subsets) {
+  for (const evaluation::GenerationSubset& subset : report.subsets) {
     print_body(subset, "generated", subset.generated);
     print_body(subset, "real", subset.real);
   }
@@ -85,30 +87,31 @@ void print_report(const GenerationReport& report) {
 
 void evaluate_generation(const EvaluateGenerationOptions& options, Program& program) {
   const std::string model_path = options.files.model_path();
-  const auto stages = load_model(model_path);
-  const Evaluator evaluator = options.evaluator.load();
+  const auto stages = nn::load_model(model_path);
+  const evaluation::Evaluator evaluator = options.evaluator.load();
   const GenerationWorkspace workspace(stages, model_path, options.files, options.generation);
-  const Database& database = workspace.search().database();
+  const db::Database& database = workspace.search().database();
   workspace.search().index().require_current(database);
-  const auto judge = options.judge == "evaluator"
-                         ? evaluator_judge(evaluator, database)
-                         : retriever_judge(workspace.search().index(), [&](const Motion& motion) {
-                             return embed_motion(workspace.search().retriever(), motion);
-                           });
-  const auto generate = [&](const LabelPrompt& prompt) {
+  const auto judge =
+      options.judge == "evaluator"
+          ? evaluation::evaluator_judge(evaluator, database)
+          : evaluation::retriever_judge(workspace.search().index(), [&](const Motion& motion) {
+              return pipeline::embed_motion(workspace.search().retriever(), motion);
+            });
+  const auto generate = [&](const evaluation::LabelPrompt& prompt) {
     // Evidence comes from training clips alone, never from the prompt's own motion.
-    ClipFilter evidence;
+    search::ClipFilter evidence;
     evidence.splits = {"train"};
     evidence.excluded_groups = {prompt.group};
     return workspace.generate(prompt.text, prompt.seed, evidence, prompt.frames).generated.motion;
   };
-  GenerationRunOptions run_options = options.run;
+  evaluation::GenerationRunOptions run_options = options.run;
   run_options.generator = workspace.identity();
-  const JudgeGallery gallery(database, *judge, run_options.gallery_splits);
-  const GenerationRun run = run_generation(database, gallery, *judge, evaluator, generate,
-                                           run_options, program.monitor());
-  const GenerationReport report =
-      report_generation(run, database, gallery, evaluator, options.report);
+  const evaluation::JudgeGallery gallery(database, *judge, run_options.gallery_splits);
+  const evaluation::GenerationRun run = evaluation::run_generation(
+      database, gallery, *judge, evaluator, generate, run_options, program.monitor());
+  const evaluation::GenerationReport report =
+      evaluation::report_generation(run, database, gallery, evaluator, options.report);
   program.finish_progress();
   if (program.json) return program.print_json(report);
   print_report(report);
@@ -126,7 +129,7 @@ void register_evaluate_generation(CLI::App& parent, Program& program) {
   options->files.add_database(*command);
   options->evaluator.add(*command);
   options->generation.add(*command);
-  GenerationRunOptions& run = options->run;
+  evaluation::GenerationRunOptions& run = options->run;
   command
       ->add_option("--prompts", run.prompts, "number of prompts; 0: every clip of the split once")
       ->capture_default_str()
@@ -157,4 +160,4 @@ void register_evaluate_generation(CLI::App& parent, Program& program) {
   command->callback([options, &program] { evaluate_generation(*options, program); });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

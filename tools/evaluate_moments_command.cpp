@@ -1,14 +1,14 @@
 #include <fmt/format.h>
 
 #include "evaluation/moment_metrics.h"
-#include "retriever/retrieval_metrics.h"
+#include "evaluation/retrieval_metrics.h"
 #include "tools/evaluate_command.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
-void print_moments(const char* name, const MomentFigures& figures) {
+void print_moments(const char* name, const evaluation::MomentFigures& figures) {
   fmt::print("{:<28}", name);
   const double values[] = {figures.recall_50, figures.recall_70, figures.mean_iou};
   for (size_t i = 0; i < 3; ++i) {
@@ -25,9 +25,9 @@ void print_moments(const char* name, const MomentFigures& figures) {
 void register_evaluate_moments(CLI::App& parent, Program& program) {
   struct Options {
     EvaluationInput input;
-    MomentTaskOptions tasks;
-    MomentOptions moments;
-    BootstrapOptions bootstrap;
+    evaluation::MomentTaskOptions tasks;
+    search::MomentOptions moments;
+    evaluation::BootstrapOptions bootstrap;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = add_command(parent, "moments",
@@ -58,9 +58,9 @@ void register_evaluate_moments(CLI::App& parent, Program& program) {
       ->capture_default_str();
   command->callback([options, &program] {
     const std::string model_path = options->input.files.model_path();
-    const Retriever retriever(load_stage(model_path, "retriever"));
+    const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
     const auto clips = options->input.load(retriever.feature_mode());
-    const MomentEvaluation result = measure_moments(
+    const evaluation::MomentEvaluation result = evaluation::measure_moments(
         retriever, clips, options->tasks, options->moments, options->bootstrap, program.monitor());
     program.finish_progress();
     if (program.json) return program.print_json(options->input.stamped(result, clips));
@@ -68,7 +68,7 @@ void register_evaluate_moments(CLI::App& parent, Program& program) {
         "split {} ({} clips, {}): {} motions of {} clips with different contents, joined; "
         "sentence: "
         "first caption of one of them\n",
-        options->input.split, clips.size(), clip_set_hash(clips), result.tasks.tasks,
+        options->input.split, clips.size(), evaluation::clip_set_hash(clips), result.tasks.tasks,
         result.tasks.parts);
     if (result.bootstrap.resamples > 0) {
       fmt::print("in brackets: {:g} % intervals, bootstrap over motions, {} resamples, seed {}\n",
@@ -83,4 +83,4 @@ void register_evaluate_moments(CLI::App& parent, Program& program) {
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

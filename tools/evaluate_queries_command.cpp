@@ -1,26 +1,26 @@
 #include <fmt/format.h>
 
-#include "retriever/query_robustness.h"
+#include "evaluation/query_robustness.h"
 #include "tools/evaluate_command.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
-void print_queries(const char* title, const std::vector<QueryFigures>& all) {
+void print_queries(const char* title, const std::vector<evaluation::QueryFigures>& all) {
   fmt::print("\n{:<22} {:>7}  {:<20} {:<20} {:>22}  {:>14}\n", title, "queries", "  R@1", "  R@10",
              "first hit right (labels)", "top 10 shared");
-  const auto with_interval = [](const RecallFigures& figures, size_t place) {
+  const auto with_interval = [](const evaluation::RecallFigures& figures, size_t place) {
     std::string text = fmt::format("{:5.1f}", figures.recall[place]);
     if (figures.intervals.empty()) return text;
     return text + fmt::format(" ({:.1f}-{:.1f})", figures.intervals[place].low,
                               figures.intervals[place].high);
   };
-  for (const QueryFigures& figures : all) {
+  for (const evaluation::QueryFigures& figures : all) {
     fmt::print("{:<22} {:>7}  {:<20} {:<20} {:>22.1f}  {:>14.1f}\n", figures.name,
                figures.recall.queries, with_interval(figures.recall, 0),
-               with_interval(figures.recall, kRecallRanks.size() - 1), figures.same_meaning,
-               figures.overlap);
+               with_interval(figures.recall, evaluation::kRecallRanks.size() - 1),
+               figures.same_meaning, figures.overlap);
   }
 }
 
@@ -29,7 +29,7 @@ void print_queries(const char* title, const std::vector<QueryFigures>& all) {
 void register_evaluate_queries(CLI::App& parent, Program& program) {
   struct Options {
     EvaluationInput input;
-    BootstrapOptions bootstrap;
+    evaluation::BootstrapOptions bootstrap;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
@@ -41,19 +41,19 @@ void register_evaluate_queries(CLI::App& parent, Program& program) {
       ->capture_default_str();
   command->callback([options, &program] {
     const std::string model_path = options->input.files.model_path();
-    const Retriever retriever(load_stage(model_path, "retriever"));
+    const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
     const auto clips = options->input.load(retriever.feature_mode());
-    const QueryRobustness result =
-        measure_query_robustness(retriever, clips, options->bootstrap, program.monitor());
+    const evaluation::QueryRobustness result = evaluation::measure_query_robustness(
+        retriever, clips, options->bootstrap, program.monitor());
     program.finish_progress();
     if (program.json) return program.print_json(options->input.stamped(result, clips));
     fmt::print("text-to-motion, split {} ({} clips, {}), full gallery; {}\n", options->input.split,
-               clips.size(), clip_set_hash(clips),
-               retrieval_definition(RetrievalProtocol::duplicates, {}));
+               clips.size(), evaluation::clip_set_hash(clips),
+               evaluation::retrieval_definition(evaluation::RetrievalProtocol::duplicates, {}));
     print_queries("form of all captions", result.forms);
     print_queries("paraphrases", result.paraphrases);
     print_queries("top 100 by part vectors", result.reranked);
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -1,41 +1,44 @@
 #include <fmt/format.h>
 
-#include "retriever/retrieval_metrics.h"
+#include "evaluation/retrieval_metrics.h"
 #include "tools/evaluate_command.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
-std::string with_interval(double value, const std::vector<Interval>& intervals, size_t place,
-                          int width) {
+std::string with_interval(double value, const std::vector<evaluation::Interval>& intervals,
+                          size_t place, int width) {
   if (intervals.empty()) return fmt::format("{:{}.1f}", value, width);
   return fmt::format("{:{}.1f} {:<13}", value, width,
                      fmt::format("({:.1f}-{:.1f})", intervals[place].low, intervals[place].high));
 }
 
-void print_recall(const std::string& name, const char* direction, const RecallFigures& figures) {
+void print_recall(const std::string& name, const char* direction,
+                  const evaluation::RecallFigures& figures) {
   std::string line = fmt::format("{:<5} {:>5}  {:<14}", name, figures.queries, direction);
-  for (size_t i = 0; i < kRecallRanks.size(); ++i) {
+  for (size_t i = 0; i < evaluation::kRecallRanks.size(); ++i) {
     line += "  " + with_interval(figures.recall[i], figures.intervals, i, 5);
   }
-  fmt::print("{}  {}\n", line,
-             with_interval(figures.median_rank, figures.intervals, kRecallRanks.size(), 5));
+  fmt::print(
+      "{}  {}\n", line,
+      with_interval(figures.median_rank, figures.intervals, evaluation::kRecallRanks.size(), 5));
 }
 
-void print_labels(const std::string& name, const char* direction, const LabelFigures& figures) {
+void print_labels(const std::string& name, const char* direction,
+                  const evaluation::LabelFigures& figures) {
   if (figures.queries == 0) return;
   fmt::print("{:<5} labels {:>5}  {:<14} {:9.1f} {:17.1f} {:9.1f} {:6.1f} {:6.1f}\n", name,
              figures.queries, direction, figures.content, figures.meaning,
              figures.perfect_recall[0], figures.perfect_recall[2], figures.perfect_recall[4]);
 }
 
-void print_protocol(const ProtocolEvaluation& protocol, const RetrievalEvaluation& evaluation,
-                    const std::string& split) {
+void print_protocol(const evaluation::ProtocolEvaluation& protocol,
+                    const evaluation::RetrievalEvaluation& evaluation, const std::string& split) {
   if (protocol.subsets.empty()) return;
   const bool intervals = evaluation.bootstrap.resamples > 0;
   fmt::print("\nprotocol {}: {}\n  {} (gallery {}, {} clips, {})\n  captions: {}\n",
-             retrieval_protocol_name(protocol.protocol), protocol.definition, split,
+             evaluation::retrieval_protocol_name(protocol.protocol), protocol.definition, split,
              protocol.subsets.front().text_to_motion.recall.gallery, evaluation.clips,
              evaluation.split_hash, evaluation.captions);
   if (intervals) {
@@ -44,18 +47,18 @@ void print_protocol(const ProtocolEvaluation& protocol, const RetrievalEvaluatio
                evaluation.bootstrap.seed);
   }
   fmt::print("{:<27}", "queries");
-  for (const int rank : kRecallRanks) {
+  for (const int rank : evaluation::kRecallRanks) {
     fmt::print("  {:<{}}", fmt::format("  R@{}", rank), intervals ? 19 : 5);
   }
   fmt::print("   MedR\n");
-  for (const RetrievalSubset& subset : protocol.subsets) {
+  for (const evaluation::RetrievalSubset& subset : protocol.subsets) {
     print_recall(subset.name, "text-to-motion", subset.text_to_motion.recall);
     print_recall(subset.name, "motion-to-text", subset.motion_to_text.recall);
   }
   if (protocol.subsets.front().text_to_motion.labels.queries == 0) return;
   fmt::print("{:<34} {:>10} {:>17}  {}\n", "first hit shows the same", "content",
              "content and style", "by labels alone: R@1, R@3, R@10");
-  for (const RetrievalSubset& subset : protocol.subsets) {
+  for (const evaluation::RetrievalSubset& subset : protocol.subsets) {
     print_labels(subset.name, "text-to-motion", subset.text_to_motion.labels);
     print_labels(subset.name, "motion-to-text", subset.motion_to_text.labels);
   }
@@ -67,10 +70,10 @@ void register_evaluate_retrieval(CLI::App& parent, Program& program) {
   struct Options {
     EvaluationInput input;
     std::vector<std::string> protocols;
-    RetrievalOptions measure;
+    evaluation::RetrievalOptions measure;
   };
   auto options = std::make_shared<Options>();
-  RetrievalOptions& measure = options->measure;
+  evaluation::RetrievalOptions& measure = options->measure;
   CLI::App* command =
       add_command(parent, "retrieval", "recall and median rank of search by text and by motion",
                   "remomask evaluate retrieval --db motions.sqlite --protocol duplicates");
@@ -93,19 +96,19 @@ void register_evaluate_retrieval(CLI::App& parent, Program& program) {
   command->callback([options, &program] {
     if (!options->protocols.empty()) options->measure.protocols.clear();
     for (const std::string& name : options->protocols) {
-      options->measure.protocols.push_back(parse_retrieval_protocol(name));
+      options->measure.protocols.push_back(evaluation::parse_retrieval_protocol(name));
     }
     const std::string model_path = options->input.files.model_path();
-    const Retriever retriever(load_stage(model_path, "retriever"));
+    const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
     const auto clips = options->input.load(retriever.feature_mode());
-    const RetrievalEvaluation result =
-        evaluate_retrieval(retriever, clips, options->measure, program.monitor());
+    const evaluation::RetrievalEvaluation result =
+        evaluation::evaluate_retrieval(retriever, clips, options->measure, program.monitor());
     program.finish_progress();
     if (program.json) return program.print_json(options->input.stamped(result, clips));
-    for (const ProtocolEvaluation& protocol : result.protocols) {
+    for (const evaluation::ProtocolEvaluation& protocol : result.protocols) {
       print_protocol(protocol, result, "split " + options->input.split);
     }
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

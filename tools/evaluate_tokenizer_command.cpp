@@ -1,15 +1,15 @@
 #include <fmt/format.h>
 
 #include "evaluation/reconstruction_fid.h"
-#include "generator/tokenizer_metrics.h"
+#include "evaluation/tokenizer_metrics.h"
 #include "tools/evaluate_command.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
-void print_reconstruction(const char* name, const ReconstructionErrors& errors) {
+void print_reconstruction(const char* name, const evaluation::ReconstructionErrors& errors) {
   fmt::print(
       "{:<11} MPJPE {:6.1f} mm   in the world {:6.1f} mm   bone length {:5.1f} mm   foot "
       "skate {:5.2f} mm/frame\n",
@@ -31,15 +31,17 @@ void register_evaluate_tokenizer(CLI::App& parent, Program& program) {
                       "measure the reconstruction FID with this evaluator too");
   command->callback([input, &program] {
     const std::string model_path = input->files.model_path();
-    const ModelStage stage = load_stage(model_path, "tokenizer");
-    TokenizerNetwork network = load_tokenizer_network(stage);
-    const auto clips = input->load(FeatureMode::fixed);
-    const TokenizerMetrics metrics = measure_tokenizer(network, clip_features(clips));
-    std::optional<ReconstructionFid> fid;
+    const nn::ModelStage stage = nn::load_stage(model_path, "tokenizer");
+    tokenizer::TokenizerNetwork network = tokenizer::load_tokenizer_network(stage);
+    const auto clips = input->load(motion::FeatureMode::fixed);
+    const evaluation::TokenizerMetrics metrics =
+        evaluation::measure_tokenizer(network, evaluation::clip_features(clips));
+    std::optional<evaluation::ReconstructionFid> fid;
     nlohmann::json document = metrics;
     if (!input->evaluator.path.empty()) {
-      const Evaluator evaluator = input->evaluator.load();
-      fid = measure_reconstruction_fid(evaluator, Tokenizer(stage), clip_features(clips));
+      const evaluation::Evaluator evaluator = input->evaluator.load();
+      fid = measure_reconstruction_fid(evaluator, tokenizer::Tokenizer(stage),
+                                       evaluation::clip_features(clips));
       document["fid"] = *fid;
       document["evaluator"] = evaluator.hash();
     }
@@ -59,4 +61,4 @@ void register_evaluate_tokenizer(CLI::App& parent, Program& program) {
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

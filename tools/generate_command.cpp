@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <chrono>
 
-#include "base/error.h"
-#include "motion/motion_file.h"
+#include "drawing/contact_sheet.h"
+#include "formats/motion_file.h"
+#include "remomask/error.h"
 #include "text/caption.h"
-#include "tools/contact_sheet.h"
 #include "tools/generate_script.h"
 #include "tools/generation_options.h"
 #include "tools/output_path.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -97,22 +97,22 @@ void register_generate(CLI::App& app, Program& program) {
     }
     require_writable_output(options->output);
     check_prompt_or_script(options->prompt, options->script, options->generation, options->count);
-    if (options->script.empty()) normalise_prompt(options->prompt);
-    if (options->prompt.size() > kMostCaptionBytes) {
-      program.warn(
-          fmt::format("only the first {} characters of the prompt can be read", kMostCaptionBytes));
+    if (options->script.empty()) text::normalise_prompt(options->prompt);
+    if (options->prompt.size() > text::kMostCaptionBytes) {
+      program.warn(fmt::format("only the first {} characters of the prompt can be read",
+                               text::kMostCaptionBytes));
     }
     const Monitor monitor = program.monitor();
     const std::string model_path = options->files.model_path();
-    const GenerationWorkspace workspace(load_model(model_path), model_path, options->files,
+    const GenerationWorkspace workspace(nn::load_model(model_path), model_path, options->files,
                                         options->generation);
-    const ClipFilter evidence_filter = options->filter.filter();
+    const search::ClipFilter evidence_filter = options->filter.filter();
     if (!options->script.empty()) {
       return run_script(workspace, options->script, options->output, options->sheet, options->seed,
                         evidence_filter, program);
     }
     nlohmann::json results = nlohmann::json::array();
-    std::vector<SheetRow> rows;
+    std::vector<drawing::SheetRow> rows;
     for (int i = 0; i < options->count; ++i) {
       if (monitor.stop_requested()) {
         throw Interrupted(fmt::format("stopped; {} of {} motions are stored", i, options->count));
@@ -126,14 +126,14 @@ void register_generate(CLI::App& app, Program& program) {
       const nlohmann::json evidence =
           workspace.evidence_json(options->prompt, made, options->influence);
       const nlohmann::json followed = followed_json(made.generated.followed, evidence);
-      save_motion_file(path, made.generated.motion,
-                       {{"prompt", options->prompt},
-                        {"seed", std::to_string(seed)},
-                        {"generator", workspace.identity()},
-                        {"database", workspace.search().database().uuid()},
-                        {"candidates", made.candidates.dump()},
-                        {"followed", followed.dump()},
-                        {"evidence", evidence.dump()}});
+      formats::save_motion_file(path, made.generated.motion,
+                                {{"prompt", options->prompt},
+                                 {"seed", std::to_string(seed)},
+                                 {"generator", workspace.identity()},
+                                 {"database", workspace.search().database().uuid()},
+                                 {"candidates", made.candidates.dump()},
+                                 {"followed", followed.dump()},
+                                 {"evidence", evidence.dump()}});
       results.push_back({{"file", path},
                          {"prompt", options->prompt},
                          {"seed", seed},
@@ -158,11 +158,11 @@ void register_generate(CLI::App& app, Program& program) {
       }
     }
     if (!options->sheet.empty()) {
-      write_contact_sheet(options->sheet, rows);
+      drawing::write_contact_sheet(options->sheet, rows);
       if (!program.json) fmt::print("{}: contact sheet\n", options->sheet);
     }
     program.print_json({{"motions", results}});
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

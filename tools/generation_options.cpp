@@ -8,11 +8,11 @@
 
 #include "base/hash.h"
 #include "base/random.h"
-#include "generator/influence.h"
-#include "generator/length_estimate.h"
+#include "pipeline/influence.h"
+#include "pipeline/length_estimate.h"
 #include "tools/candidate_list.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -25,7 +25,7 @@ constexpr double kMostEvaluatedSeconds = 9.8;  // what the transformers see at o
 }  // namespace
 
 void GenerationOptions::add(CLI::App& command) {
-  SamplingOptions& sampling = generate.sampling;
+  generator::SamplingOptions& sampling = generate.sampling;
   command.add_option("--steps", sampling.steps, "passes of the masked transformer")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
@@ -70,15 +70,15 @@ void GenerationOptions::add(CLI::App& command) {
       ->check(CLI::Range(1, 100));
 }
 
-GenerationWorkspace::GenerationWorkspace(const std::map<std::string, ModelStage>& stages,
+GenerationWorkspace::GenerationWorkspace(const std::map<std::string, nn::ModelStage>& stages,
                                          const std::string& model_path, const FileOptions& files,
                                          const GenerationOptions& options)
     : search_(stages, model_path, files.database_path(), files.index_path()),
       generator_(stages),
       options_(options) {
   std::string digest = search_.database().uuid();
-  for (const auto& [kind, stage] : stages) digest += stage_hash(stage);
-  const SamplingOptions& sampling = options.generate.sampling;
+  for (const auto& [kind, stage] : stages) digest += nn::stage_hash(stage);
+  const generator::SamplingOptions& sampling = options.generate.sampling;
   const char* retrieval = options.no_retrieval              ? "off"
                           : options.generate.read_untrusted ? "all"
                                                             : "trusted";
@@ -92,24 +92,24 @@ GenerationWorkspace::GenerationWorkspace(const std::map<std::string, ModelStage>
       options.length, options.generate.held_feet ? "held and raised" : "free");
 }
 
-GenerateOptions GenerationWorkspace::generate_options(uint64_t seed) const {
-  GenerateOptions result = options_.generate;
+pipeline::GenerateOptions GenerationWorkspace::generate_options(uint64_t seed) const {
+  pipeline::GenerateOptions result = options_.generate;
   result.seed = seed;
   result.use_retrieval = !options_.no_retrieval;
   return result;
 }
 
 Evidence GenerationWorkspace::find_evidence(const std::string& sentence,
-                                            const ClipFilter& filter) const {
+                                            const search::ClipFilter& filter) const {
   Evidence result;
   const auto k = static_cast<int>(generator_.max_hits());
   if (options_.no_retrieval || k == 0) return result;
   result.hits = search_.search(sentence, k, filter);
   const std::vector<float> query = text_vector(search_.retriever(), sentence);
-  for (const MotionHit& hit : result.hits) {
+  for (const search::MotionHit& hit : result.hits) {
     const auto vectors = search_.database().embedding(search_.retriever().hash(), hit.clip.id);
     if (!vectors || vectors->text.empty()) continue;
-    RetrievedMotion motion;
+    pipeline::RetrievedMotion motion;
     motion.clip_id = hit.clip.id;
     motion.motion = vectors->motion;
     motion.text = vectors->text;
@@ -127,24 +127,25 @@ Evidence GenerationWorkspace::find_evidence(const std::string& sentence,
 }
 
 nlohmann::json GenerationWorkspace::choose_length(const std::string& prompt,
-                                                  const ClipFilter& filter,
-                                                  GenerateOptions& options) const {
-  const LengthRule rule = parse_length_rule(options_.length);
+                                                  const search::ClipFilter& filter,
+                                                  pipeline::GenerateOptions& options) const {
+  const pipeline::LengthRule rule = pipeline::parse_length_rule(options_.length);
   if (options.seconds) return nullptr;
-  if (rule == LengthRule::evidence) return {{"rule", options_.length}};
-  std::vector<LengthNeighbour> neighbours;
-  for (const MotionHit& hit : search_.search(prompt, kLengthNeighbours, filter)) {
+  if (rule == pipeline::LengthRule::evidence) return {{"rule", options_.length}};
+  std::vector<pipeline::LengthNeighbour> neighbours;
+  for (const search::MotionHit& hit : search_.search(prompt, pipeline::kLengthNeighbours, filter)) {
     neighbours.push_back({hit.similarity, hit.clip.frames});
   }
-  const std::vector<double> distribution = length_distribution(neighbours);
-  options.seconds = estimate_seconds(distribution, rule, options.seed);
-  return {{"rule", options_.length},
-          {"neighbours", neighbours.size()},
-          {"likely_seconds", estimate_seconds(distribution, LengthRule::likely, 0)},
-          {"distribution", distribution}};
+  const std::vector<double> distribution = pipeline::length_distribution(neighbours);
+  options.seconds = pipeline::estimate_seconds(distribution, rule, options.seed);
+  return {
+      {"rule", options_.length},
+      {"neighbours", neighbours.size()},
+      {"likely_seconds", pipeline::estimate_seconds(distribution, pipeline::LengthRule::likely, 0)},
+      {"distribution", distribution}};
 }
 
-nlohmann::json followed_json(const std::optional<FollowedHit>& followed,
+nlohmann::json followed_json(const std::optional<pipeline::FollowedHit>& followed,
                              const nlohmann::json& evidence) {
   if (!followed) return nullptr;
   for (const auto& hit : evidence) {
@@ -158,9 +159,10 @@ nlohmann::json evidence_list(const Evidence& evidence) {
   nlohmann::json list = hits_json(evidence.hits);
   for (auto& hit : list) {
     const auto last = evidence.motions.begin() + static_cast<std::ptrdiff_t>(evidence.read);
-    hit["read"] = std::any_of(evidence.motions.begin(), last, [&](const RetrievedMotion& motion) {
-      return hit.at("clip_id") == motion.clip_id;
-    });
+    hit["read"] =
+        std::any_of(evidence.motions.begin(), last, [&](const pipeline::RetrievedMotion& motion) {
+          return hit.at("clip_id") == motion.clip_id;
+        });
   }
   return list;
 }
@@ -176,8 +178,8 @@ nlohmann::json GenerationWorkspace::evidence_json(const std::string& prompt,
                                                   bool influence) const {
   nlohmann::json list = evidence_list(made.evidence);
   if (!influence) return list;
-  const std::vector<double> shares =
-      hit_influence(generator_, prompt, made.evidence.motions, made.options, made.generated);
+  const std::vector<double> shares = pipeline::hit_influence(
+      generator_, prompt, made.evidence.motions, made.options, made.generated);
   for (size_t i = 0; i < shares.size(); ++i) {
     for (auto& hit : list) {
       if (hit.at("clip_id") == made.evidence.motions[i].clip_id) hit["influence"] = shares[i];
@@ -187,11 +189,12 @@ nlohmann::json GenerationWorkspace::evidence_json(const std::string& prompt,
 }
 
 EvidencedMotion GenerationWorkspace::generate(const std::string& prompt, uint64_t seed,
-                                              const ClipFilter& evidence, int frames) const {
+                                              const search::ClipFilter& evidence,
+                                              int frames) const {
   const Evidence found = find_evidence(prompt, evidence);
   CandidateList<EvidencedMotion> candidates(search_.retriever(), prompt);
   for (const uint64_t number : candidate_seeds(seed, options_.best_of)) {
-    GenerateOptions options = generate_options(number);
+    pipeline::GenerateOptions options = generate_options(number);
     if (frames > 0) options.seconds = std::min(frames / 20.0, kMostEvaluatedSeconds);
     EvidencedMotion made;
     made.seed = number;
@@ -207,4 +210,4 @@ EvidencedMotion GenerationWorkspace::generate(const std::string& prompt, uint64_
   return best;
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

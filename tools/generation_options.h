@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "generator/pipeline.h"
+#include "pipeline/motion_generator.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 /// Options of a generation that `generate` and `evaluate generation` share.
 struct GenerationOptions {
-  GenerateOptions generate;
+  pipeline::GenerateOptions generate;
   bool no_retrieval = false;
-  int best_of = 1;                  ///< candidates a motion, see score_candidate()
+  int best_of = 1;                  ///< candidates a motion, see pipeline::score_candidate()
   std::string length = "evidence";  ///< see parse_length_rule(); only where no length is given
 
   void add(CLI::App& command);
@@ -21,8 +21,8 @@ struct GenerationOptions {
 
 /// What search found for a sentence, for people and for the generator.
 struct Evidence {
-  std::vector<MotionHit> hits;
-  std::vector<RetrievedMotion> motions;
+  std::vector<search::MotionHit> hits;
+  std::vector<pipeline::RetrievedMotion> motions;
   size_t read = 0;  ///< so many of `motions`, the first ones, are read (Generator::read_hits)
 };
 
@@ -31,17 +31,17 @@ nlohmann::json evidence_list(const Evidence& evidence);
 
 /// A generated motion with the clips it was made from.
 struct EvidencedMotion {
-  Generated generated;
+  pipeline::Generated generated;
   Evidence evidence;
-  GenerateOptions options;    ///< of the candidate that was chosen
-  uint64_t seed = 0;          ///< of the candidate that was chosen
-  nlohmann::json candidates;  ///< seeds and scores, the best first; empty for one candidate
-  nlohmann::json length;      ///< how the length was estimated; null where it was given
+  pipeline::GenerateOptions options;  ///< of the candidate that was chosen
+  uint64_t seed = 0;                  ///< of the candidate that was chosen
+  nlohmann::json candidates;          ///< seeds and scores, the best first; empty for one candidate
+  nlohmann::json length;              ///< how the length was estimated; null where it was given
 };
 
 /// The retrieved motion, of those of hits_json(), that a generated one started from; null
 /// without one.
-nlohmann::json followed_json(const std::optional<FollowedHit>& followed,
+nlohmann::json followed_json(const std::optional<pipeline::FollowedHit>& followed,
                              const nlohmann::json& evidence);
 
 /// Seeds of `count` candidates; the first is `seed` itself.
@@ -50,18 +50,18 @@ std::vector<uint64_t> candidate_seeds(uint64_t seed, int count);
 /// A whole model with the database that it retrieves from.
 class GenerationWorkspace {
  public:
-  GenerationWorkspace(const std::map<std::string, ModelStage>& stages,
+  GenerationWorkspace(const std::map<std::string, nn::ModelStage>& stages,
                       const std::string& model_path, const FileOptions& files,
                       const GenerationOptions& options);
 
   /// The motions that search finds for a sentence among the clips of the filter; none
   /// with --no-retrieval.
-  Evidence find_evidence(const std::string& sentence, const ClipFilter& filter) const;
+  Evidence find_evidence(const std::string& sentence, const search::ClipFilter& filter) const;
 
   /// `evidence` says which clips may be retrieved; `frames` 0: --seconds, or the
   /// length of the retrieved motions.
-  EvidencedMotion generate(const std::string& prompt, uint64_t seed, const ClipFilter& evidence,
-                           int frames = 0) const;
+  EvidencedMotion generate(const std::string& prompt, uint64_t seed,
+                           const search::ClipFilter& evidence, int frames = 0) const;
 
   /// hits_json() of what a motion was made from; with `influence` every hit that was used says
   /// what leaving it out would change (hit_influence()).
@@ -69,22 +69,22 @@ class GenerationWorkspace {
                                bool influence) const;
 
   const SearchWorkspace& search() const { return search_; }
-  const Generator& generator() const { return generator_; }
+  const pipeline::Generator& generator() const { return generator_; }
   /// The options with a seed.
-  GenerateOptions generate_options(uint64_t seed) const;
+  pipeline::GenerateOptions generate_options(uint64_t seed) const;
   int best_of() const { return options_.best_of; }
   /// Hash of the model and all settings that change the result.
   const std::string& identity() const { return identity_; }
 
  private:
   /// Sets the seconds where nothing else gives them; says how.
-  nlohmann::json choose_length(const std::string& prompt, const ClipFilter& filter,
-                               GenerateOptions& options) const;
+  nlohmann::json choose_length(const std::string& prompt, const search::ClipFilter& filter,
+                               pipeline::GenerateOptions& options) const;
 
   SearchWorkspace search_;
-  Generator generator_;
+  pipeline::Generator generator_;
   GenerationOptions options_;
   std::string identity_;
 };
 
-}  // namespace remomask
+}  // namespace remomask::tools

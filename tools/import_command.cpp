@@ -1,16 +1,16 @@
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "base/machine.h"
-#include "db/import.h"
 #include "db/storing_database.h"
+#include "exchange/import.h"
+#include "remomask/error.h"
 #include "tools/program.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
-nlohmann::json import_report_json(const ImportReport& report) {
+nlohmann::json import_report_json(const exchange::ImportReport& report) {
   nlohmann::json rejected = nlohmann::json::array();
   for (const auto& entry : report.rejected) {
     rejected.push_back({{"file", entry.file}, {"reason", entry.reason}});
@@ -30,7 +30,7 @@ nlohmann::json import_report_json(const ImportReport& report) {
 
 void register_import(CLI::App& app, Program& program) {
   struct Options {
-    ImportOptions import;
+    exchange::ImportOptions import;
     std::string database;
   };
   auto options = std::make_shared<Options>();
@@ -57,9 +57,10 @@ void register_import(CLI::App& app, Program& program) {
       ->capture_default_str();
   command->callback([options, &program] {
     options->import.threads = program.threads > 0 ? program.threads : available_cpus();
-    StoringDatabase storing(options->database);
-    Database& database = *storing;
-    const ImportReport report = import_folder(database, options->import, program.monitor());
+    db::StoringDatabase storing(options->database);
+    db::Database& database = *storing;
+    const exchange::ImportReport report =
+        exchange::import_folder(database, options->import, program.monitor());
     program.finish_progress();
     if (program.json) return program.print_json(import_report_json(report));
     for (const std::string& warning : report.warnings) program.warn(warning);
@@ -73,4 +74,4 @@ void register_import(CLI::App& app, Program& program) {
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

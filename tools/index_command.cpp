@@ -5,18 +5,19 @@
 #include "tools/program.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
-std::string describe_type(const IndexType& type) {
+std::string describe_type(const index::IndexType& type) {
   std::string text = type.factory;
   if (!type.search_parameters.empty()) text += " " + type.search_parameters;
   if (type.requested != type.factory) text += " (" + type.requested + ")";
   return text + (type.recall ? fmt::format(", recall@10 {:.3f}", *type.recall) : ", exact");
 }
 
-nlohmann::json update_json(const FileOptions& files, int64_t embedded, const IndexUpdate& made) {
+nlohmann::json update_json(const FileOptions& files, int64_t embedded,
+                           const index::IndexUpdate& made) {
   nlohmann::json document = {{"index", files.index_path()},
                              {"clips", made.count},
                              {"width", made.width},
@@ -38,7 +39,7 @@ nlohmann::json update_json(const FileOptions& files, int64_t embedded, const Ind
 void register_index(CLI::App& app, Program& program) {
   struct Options {
     FileOptions files;
-    VectorIndexOptions index;
+    index::VectorIndexOptions index;
     bool rebuild = false;
   };
   auto options = std::make_shared<Options>();
@@ -57,18 +58,18 @@ void register_index(CLI::App& app, Program& program) {
   command->add_flag("--rebuild", options->rebuild, "build anew instead of adding what is new");
   command->callback([command, options, &program] {
     const std::string model_path = options->files.model_path();
-    const auto stages = load_model(model_path);
-    const Retriever retriever(require_stage(stages, "retriever", model_path));
-    Database database(options->files.database_path(), OpenMode::read_write);
+    const auto stages = nn::load_model(model_path);
+    const retriever::Retriever retriever(require_stage(stages, "retriever", model_path));
+    db::Database database(options->files.database_path(), db::OpenMode::read_write);
     const Monitor monitor = program.monitor();
-    const int64_t embedded = embed_database(database, retriever, monitor);
-    UpdateOptions update;
+    const int64_t embedded = retriever::embed_database(database, retriever, monitor);
+    index::UpdateOptions update;
     update.rebuild = options->rebuild;
     if (command->count("--factory") + command->count("--search-parameters") > 0) {
       update.type = options->index;
     }
-    const IndexUpdate made =
-        update_index(options->files.index_path(), database, retriever.hash(), update, monitor);
+    const index::IndexUpdate made = index::update_index(options->files.index_path(), database,
+                                                        retriever.hash(), update, monitor);
     program.finish_progress();
     if (program.json) return program.print_json(update_json(options->files, embedded, made));
     fmt::print("{}: {} clips, {} numbers each, {}\n", options->files.index_path(), made.count,
@@ -79,4 +80,4 @@ void register_index(CLI::App& app, Program& program) {
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

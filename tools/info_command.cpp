@@ -4,7 +4,7 @@
 #include "tools/database_info.h"
 #include "tools/program.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -16,14 +16,14 @@ bool is_model_path(const std::string& path) {
 
 nlohmann::json describe_model(const std::string& path) {
   nlohmann::json stages = nlohmann::json::object();
-  for (const auto& [kind, stage] : load_model(path)) {
+  for (const auto& [kind, stage] : nn::load_model(path)) {
     int64_t values = 0;
     for (const auto& [name, tensor] : stage.tensors) values += tensor.numel();
     nlohmann::json config = stage.config;
     if (config.contains("vocabulary")) {
       config["vocabulary"] = fmt::format("{} pieces", config["vocabulary"].size());
     }
-    stages[kind] = {{"values", values}, {"hash", stage_hash(stage)}, {"config", config}};
+    stages[kind] = {{"values", values}, {"hash", nn::stage_hash(stage)}, {"config", config}};
   }
   return {{"file", path}, {"stages", stages}};
 }
@@ -42,4 +42,4 @@ void register_info(CLI::App& app, Program& program) {
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -5,11 +5,11 @@
 #include <exception>
 #include <new>
 
-#include "base/error.h"
 #include "nn/threads.h"
+#include "remomask/error.h"
 #include "tools/program.h"
 
-namespace remomask {
+namespace remomask::tools {
 namespace {
 
 constexpr int kExitFailed = 1;
@@ -36,7 +36,7 @@ int run(int argc, char** argv) {
       register_info,     register_db,       register_ablate,
   };
   for (const RegisterCommand add : commands) add(app, program);
-  app.parse_complete_callback([&] { set_compute_threads(program.threads); });
+  app.parse_complete_callback([&] { nn::set_compute_threads(program.threads); });
   try {
     app.parse(argc, argv);
     program.finish_progress();
@@ -59,6 +59,6 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace remomask
+}  // namespace remomask::tools
 
-int main(int argc, char** argv) { return remomask::run(argc, argv); }
+int main(int argc, char** argv) { return remomask::tools::run(argc, argv); }

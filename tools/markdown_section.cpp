@@ -1,9 +1,9 @@
 #include "tools/markdown_section.h"
 
-#include "base/error.h"
 #include "base/file.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 void replace_section(const std::string& path, const std::string& name, const std::string& content) {
   const std::string text = read_file(path);
@@ -17,4 +17,4 @@ void replace_section(const std::string& path, const std::string& name, const std
   write_file_atomically(path, text.substr(0, first + begin.size()) + content + text.substr(last));
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

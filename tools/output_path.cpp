@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace fs = std::filesystem;
 
@@ -29,4 +29,4 @@ std::string sample_path(const std::string& output, int i, int count) {
       .string();
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -1,18 +1,18 @@
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "db/clip_hash.h"
 #include "db/database.h"
 #include "db/storing_database.h"
-#include "motion/procedural.h"
+#include "remomask/error.h"
+#include "synthetic/procedural.h"
 #include "tools/program.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 void register_procedural(CLI::App& app, Program& program) {
   struct Options {
     std::string database;
-    ProceduralOptions make;
+    synthetic::ProceduralOptions make;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
@@ -26,16 +26,16 @@ void register_procedural(CLI::App& app, Program& program) {
   command->add_option("--seed", options->make.seed, "other seed, other clips")
       ->capture_default_str();
   command->callback([options, &program] {
-    StoringDatabase storing(options->database);
-    Database& database = *storing;
+    db::StoringDatabase storing(options->database);
+    db::Database& database = *storing;
     const Monitor monitor = program.monitor();
-    const auto clips = make_procedural_clips(options->make);
+    const auto clips = synthetic::make_procedural_clips(options->make);
     int added = 0, known = 0;
     database.begin();
-    for (const ProceduralClip& made : clips) {
-      Clip clip;
+    for (const synthetic::ProceduralClip& made : clips) {
+      db::Clip clip;
       // Every seed makes clips of the same kinds and numbers: names must differ.
-      clip.name = options->make.seed == ProceduralOptions().seed
+      clip.name = options->make.seed == synthetic::ProceduralOptions().seed
                       ? made.name
                       : fmt::format("{}@{}", made.name, options->make.seed);
       clip.source = "procedural";
@@ -43,7 +43,7 @@ void register_procedural(CLI::App& app, Program& program) {
       clip.split = made.split;
       clip.licence = "MIT";
       clip.group = "procedural/" + clip.name;
-      clip.content_hash = clip_content_hash(made.motion);
+      clip.content_hash = db::clip_content_hash(made.motion);
       clip.frames = made.motion.frames;
       clip.captions = made.captions;
       clip.labels = made.labels;
@@ -63,4 +63,4 @@ void register_procedural(CLI::App& app, Program& program) {
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

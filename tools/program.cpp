@@ -13,9 +13,9 @@
 #include <memory>
 #include <thread>
 
-#include "base/error.h"
+#include "remomask/error.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -163,4 +163,4 @@ std::string shipped_file(const std::string& name) {
               "with --model / --db");
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

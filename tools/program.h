@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "remomask/progress.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 /// What every sub-command shares: global options, output, stopping.
 class Program {
@@ -62,4 +62,4 @@ void add_repeatable(CLI::App& command, const std::string& name, std::vector<std:
 /// none of them.
 std::string shipped_file(const std::string& name);
 
-}  // namespace remomask
+}  // namespace remomask::tools

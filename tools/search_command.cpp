@@ -1,17 +1,17 @@
 #include <fmt/format.h>
 
-#include "base/error.h"
-#include "index/motion_search.h"
-#include "motion/motion_file.h"
+#include "formats/motion_file.h"
+#include "remomask/error.h"
+#include "search/motion_search.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
 struct SearchCommandOptions {
-  SearchQuery query;
+  search::SearchQuery query;
   FileOptions files;
   FilterOptions filter;
   std::string like_file;
@@ -20,7 +20,7 @@ struct SearchCommandOptions {
 };
 
 void add_query_options(CLI::App& command, SearchCommandOptions& options) {
-  SearchQuery& query = options.query;
+  search::SearchQuery& query = options.query;
   command.add_option("text", query.text,
                      "what to look for; clips with a word that follows a minus are left out");
   command.add_option("--like", options.like_file, "a motion file (BVH, npy): more like this");
@@ -59,25 +59,25 @@ void add_result_options(CLI::App& command, SearchCommandOptions& options) {
   command.add_flag("--moments", options.query.moments, "say where in each clip");
 }
 
-SearchQuery complete_query(const SearchCommandOptions& options) {
-  SearchQuery query = options.query;
+search::SearchQuery complete_query(const SearchCommandOptions& options) {
+  search::SearchQuery query = options.query;
   query.filter = options.filter.filter();
   query.grouped = !options.ungrouped;
   if (!options.like_file.empty()) {
-    query.motion = load_motion_file(options.like_file).motion;
+    query.motion = formats::load_motion_file(options.like_file).motion;
     if (options.from || options.to) {
-      query.motion = cut_motion(*query.motion, options.from.value_or(0), options.to);
+      query.motion = search::cut_motion(*query.motion, options.from.value_or(0), options.to);
     }
   } else if (options.from || options.to) {
     throw Error("--from and --to choose a piece of a motion file; name one with --like");
   }
-  check_query(query);  // before the model is loaded
+  search::check_query(query);  // before the model is loaded
   return query;
 }
 
-MotionSearch open_search(const SearchCommandOptions& options) {
-  return MotionSearch(options.files.model_path(), options.files.database_path(),
-                      options.files.index_path());
+search::MotionSearch open_search(const SearchCommandOptions& options) {
+  return search::MotionSearch(options.files.model_path(), options.files.database_path(),
+                              options.files.index_path());
 }
 
 nlohmann::json query_json(const SearchCommandOptions& options) {
@@ -87,7 +87,7 @@ nlohmann::json query_json(const SearchCommandOptions& options) {
   return query;
 }
 
-nlohmann::json motion_hit_json(const MotionHit& hit) {
+nlohmann::json motion_hit_json(const search::MotionHit& hit) {
   nlohmann::json json = hit_json(hit);
   json["folded"] = hit.folded;
   json["tags"] = hit.clip.tags;
@@ -101,33 +101,33 @@ nlohmann::json motion_hit_json(const MotionHit& hit) {
 }
 
 /// "0.713", with a probability "0.713 (82 %)".
-std::string score_text(const MotionHit& hit) {
+std::string score_text(const search::MotionHit& hit) {
   std::string text = fmt::format("{:.3f}", hit.similarity);
   if (hit.probability) text += fmt::format(" ({:.0f} %)", 100 * *hit.probability);
   return text;
 }
 
-void print_hit(const MotionHit& hit) {
-  std::string where = fmt::format("{:5.1f} s", clip_seconds(hit.clip));
+void print_hit(const search::MotionHit& hit) {
+  std::string where = fmt::format("{:5.1f} s", search::clip_seconds(hit.clip));
   if (hit.moment) where += fmt::format(", {:.1f} to {:.1f} s", hit.moment->start, hit.moment->end);
   fmt::print("{:3}  {}  {}  {:<32} {}{}\n", hit.rank, score_text(hit), where, hit.clip.name,
              hit.clip.captions.empty() ? "" : hit.clip.captions.front(),
              hit.folded > 0 ? fmt::format(" (+{} of the same motion)", hit.folded) : "");
 }
 
-void print_answer(const SearchAnswer& answer) {
+void print_answer(const search::SearchAnswer& answer) {
   if (answer.candidates == 0) {
     fmt::print("no clip passes the filters\n");
   } else if (answer.hits.empty() && answer.refused) {
     fmt::print("nothing fits: the most similar of {} clips is {} with {}, below the limit\n",
                answer.candidates, answer.refused->clip.name, score_text(*answer.refused));
   }
-  for (const MotionHit& hit : answer.hits) print_hit(hit);
+  for (const search::MotionHit& hit : answer.hits) print_hit(hit);
 }
 
 void search_clips(const SearchCommandOptions& options, Program& program) {
-  const SearchQuery query = complete_query(options);
-  const SearchAnswer answer = open_search(options).search(query);
+  const search::SearchQuery query = complete_query(options);
+  const search::SearchAnswer answer = open_search(options).search(query);
   if (!program.json) {
     print_answer(answer);
     if (answer.unsearched > 0) {
@@ -143,17 +143,17 @@ void search_clips(const SearchCommandOptions& options, Program& program) {
   document["clips_without_vectors"] = answer.unsearched;
   if (!query.boost_words.empty()) document["boosted"] = answer.boosted;
   document["hits"] = nlohmann::json::array();
-  for (const MotionHit& hit : answer.hits) document["hits"].push_back(motion_hit_json(hit));
+  for (const search::MotionHit& hit : answer.hits) document["hits"].push_back(motion_hit_json(hit));
   if (answer.refused) document["refused"] = motion_hit_json(*answer.refused);
   program.print_json(document);
 }
 
 void search_captions(const SearchCommandOptions& options, Program& program) {
-  const SearchQuery query = complete_query(options);
-  const std::vector<CaptionHit> hits = open_search(options).captions_for(query);
+  const search::SearchQuery query = complete_query(options);
+  const std::vector<search::CaptionHit> hits = open_search(options).captions_for(query);
   if (!program.json) {
     if (hits.empty()) fmt::print("no clip with captions passes the filters\n");
-    for (const CaptionHit& hit : hits) {
+    for (const search::CaptionHit& hit : hits) {
       fmt::print("{:3}  {:.3f}  {:<60} {}{}\n", hit.rank, hit.similarity, hit.caption,
                  hit.clips.front(),
                  hit.clips.size() > 1 ? fmt::format(" (+{})", hit.clips.size() - 1) : "");
@@ -162,7 +162,7 @@ void search_captions(const SearchCommandOptions& options, Program& program) {
   }
   nlohmann::json document = query_json(options);
   document["captions"] = nlohmann::json::array();
-  for (const CaptionHit& hit : hits) {
+  for (const search::CaptionHit& hit : hits) {
     document["captions"].push_back({{"rank", hit.rank},
                                     {"caption", hit.caption},
                                     {"similarity", hit.similarity},
@@ -190,4 +190,4 @@ void register_search(CLI::App& app, Program& program) {
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

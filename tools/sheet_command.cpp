@@ -2,20 +2,20 @@
 
 #include <filesystem>
 
-#include "base/error.h"
 #include "base/file.h"
-#include "motion/motion_file.h"
-#include "tools/contact_sheet.h"
+#include "drawing/contact_sheet.h"
+#include "formats/motion_file.h"
+#include "remomask/error.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
 /// Title and subtitle of a row: prompt and retrieved clips where the motion was
 /// generated (FILE.json beside it), else the name of the file.
-void label_row(const std::string& path, SheetRow& row) {
+void label_row(const std::string& path, drawing::SheetRow& row) {
   row.title = std::filesystem::path(path).filename().string();
   if (!std::filesystem::exists(path + ".json")) return;
   try {
@@ -33,7 +33,7 @@ void register_sheet(CLI::App& app, Program& program) {
   struct Options {
     std::vector<std::string> inputs, titles;
     std::string output;
-    SheetOptions sheet;
+    drawing::SheetOptions sheet;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = add_command(app, "sheet", "draw motion files as a contact sheet (PNG)",
@@ -48,18 +48,18 @@ void register_sheet(CLI::App& app, Program& program) {
     if (options->titles.size() > options->inputs.size()) {
       throw Error("there are more --title than motion files");
     }
-    std::vector<SheetRow> rows;
+    std::vector<drawing::SheetRow> rows;
     for (size_t i = 0; i < options->inputs.size(); ++i) {
-      SheetRow row;
+      drawing::SheetRow row;
       label_row(options->inputs[i], row);
       if (i < options->titles.size()) row.title = options->titles[i];
-      row.motion = load_motion_file(options->inputs[i]).motion;
+      row.motion = formats::load_motion_file(options->inputs[i]).motion;
       rows.push_back(row);
     }
-    write_contact_sheet(options->output, rows, options->sheet);
+    drawing::write_contact_sheet(options->output, rows, options->sheet);
     if (program.json) return program.print_json({{"output", options->output}});
     fmt::print("{}: {} motions\n", options->output, rows.size());
   });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

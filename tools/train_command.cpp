@@ -4,14 +4,14 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.h"
 #include "base/file.h"
-#include "evaluation/evaluator_training.h"
-#include "generator/model_training.h"
-#include "generator/variants.h"
+#include "lab/variants.h"
+#include "remomask/error.h"
 #include "tools/program.h"
+#include "training/evaluator_training.h"
+#include "training/model_training.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 namespace {
 
@@ -46,63 +46,63 @@ void read_more_captions(const std::string& path, std::vector<std::string>& capti
 }
 
 /// The recipe with what the user wants otherwise, the same for every stage.
-TrainingRecipe chosen_recipe(const TrainOptions& options) {
-  TrainingRecipe recipe = training_recipe(options.preset);
-  recipe.retriever_training.queues = parse_queues(options.queues);
+training::TrainingRecipe chosen_recipe(const TrainOptions& options) {
+  training::TrainingRecipe recipe = training::training_recipe(options.preset);
+  recipe.retriever_training.queues = retriever::parse_queues(options.queues);
   if (options.queue_size) recipe.retriever_training.queue_size = *options.queue_size;
   if (options.same_label_weight) {
     recipe.retriever_training.same_meaning_weight = *options.same_label_weight;
   }
-  apply_variant(recipe, options.variant);
-  for (const std::string& stage : recipe_stages(recipe)) {
-    TrainerOptions& trainer = stage_trainer(recipe, stage);
-    set_stage_steps(recipe, stage, options.steps.value_or(trainer.steps));
-    if (options.batch) set_stage_batch(recipe, stage, *options.batch);
+  lab::apply_variant(recipe, options.variant);
+  for (const std::string& stage : training::recipe_stages(recipe)) {
+    training::TrainerOptions& trainer = training::stage_trainer(recipe, stage);
+    training::set_stage_steps(recipe, stage, options.steps.value_or(trainer.steps));
+    if (options.batch) training::set_stage_batch(recipe, stage, *options.batch);
     if (options.learning_rate) trainer.learning_rate = *options.learning_rate;
     trainer.seed = options.seed;
   }
   return recipe;
 }
 
-TrainingSplits load_splits(const TrainOptions& options) {
-  const Database database(options.database, OpenMode::read_only);
+training::TrainingSplits load_splits(const TrainOptions& options) {
+  const db::Database database(options.database, db::OpenMode::read_only);
   const auto load = [&](const std::string& split) {
-    TrainingSetOptions set;
+    db::TrainingSetOptions set;
     set.splits = {split};
     set.sources = options.sources;
     set.add_mirrored = split == "train";
-    auto clips = load_training_set(database, set);
+    auto clips = db::load_training_set(database, set);
     if (clips.empty()) {
       throw FileError(options.database, 0, "has no clips of split \"" + split + "\"");
     }
     return clips;
   };
-  TrainingSplits splits{load("train"), load("val"), {}};
+  training::TrainingSplits splits{load("train"), load("val"), {}};
   for (const std::string& path : options.captions) read_more_captions(path, splits.more_captions);
   return splits;
 }
 
 /// Trains the evaluator, which is no part of a model.
-void train_judge(const TrainOptions& options, const TrainingSplits& clips, const std::string& path,
-                 const Monitor& monitor) {
-  EvaluatorTrainingOptions training(options.preset);
-  TrainerOptions& trainer = training.trainer;
+void train_judge(const TrainOptions& options, const training::TrainingSplits& clips,
+                 const std::string& path, const Monitor& monitor) {
+  training::EvaluatorTrainingOptions training(options.preset);
+  training::TrainerOptions& trainer = training.trainer;
   trainer.steps = options.steps.value_or(trainer.steps);
   trainer.learning_rate = options.learning_rate.value_or(trainer.learning_rate);
   trainer.warmup_steps = std::min(trainer.warmup_steps, std::max<int64_t>(1, trainer.steps / 10));
   trainer.seed = training.movement.seed = options.seed;
   trainer.checkpoint_path = path + ".checkpoint";
   training.batch = options.batch.value_or(training.batch);
-  const ModelStage stage =
-      train_evaluator(clips.train, clips.val, evaluator_preset(options.preset), training, monitor);
-  save_model(path, {stage}, /*half=*/true);
+  const nn::ModelStage stage = training::train_evaluator(
+      clips.train, clips.val, evaluation::evaluator_preset(options.preset), training, monitor);
+  nn::save_model(path, {stage}, /*half=*/true);
   fs::remove(path + ".checkpoint");
   fs::remove(path + ".checkpoint.movement");
 }
 
 void run_training(const TrainOptions& options, Program& program) {
-  const TrainingSplits clips = load_splits(options);
-  const StageFile file = [&](const std::string& stage) {
+  const training::TrainingSplits clips = load_splits(options);
+  const training::StageFile file = [&](const std::string& stage) {
     return (fs::path(options.folder) / (stage + ".safetensors")).string();
   };
   fs::create_directories(options.folder);
@@ -112,21 +112,21 @@ void run_training(const TrainOptions& options, Program& program) {
     fmt::print("{}\n", file("evaluator"));
     return;
   }
-  const TrainingRecipe recipe = chosen_recipe(options);
+  const training::TrainingRecipe recipe = chosen_recipe(options);
   const bool all = options.stage == "all";
-  const std::vector<std::string> stages = recipe_stages(recipe);
+  const std::vector<std::string> stages = training::recipe_stages(recipe);
   if (!all && std::find(stages.begin(), stages.end(), options.stage) == stages.end()) {
     throw Error("variant " + options.variant + " has no stage " + options.stage);
   }
-  GeneratorDataCache prepared;
+  training::GeneratorDataCache prepared;
   for (const std::string& stage : all ? stages : std::vector{options.stage}) {
     if (all && fs::exists(file(stage))) {
       program.warn(file(stage) + " is there and is kept; remove it to train it again");
       continue;
     }
-    train_stage(recipe, stage, file, clips, prepared, program.monitor());
+    training::train_stage(recipe, stage, file, clips, prepared, program.monitor());
   }
-  if (all) join_stages(recipe, file, clips, file("model"), program.monitor());
+  if (all) training::join_stages(recipe, file, clips, file("model"), program.monitor());
   program.finish_progress();
   fmt::print("{}\n", file(all ? "model" : options.stage));
 }
@@ -148,9 +148,9 @@ void register_train(CLI::App& app, Program& program) {
   command->add_option("-o,--output", options->folder, "folder of the stage files")->required();
   command->add_option("--preset", options->preset, "sizes of all networks")
       ->capture_default_str()
-      ->check(CLI::IsMember(model_presets()));
+      ->check(CLI::IsMember(training::model_presets()));
   std::string variants;
-  for (const ModelVariant& variant : model_variants()) variants += variant.name + ", ";
+  for (const lab::ModelVariant& variant : lab::model_variants()) variants += variant.name + ", ";
   command
       ->add_option("--variant", options->variant,
                    "leave something out: " + variants + "levels-N, quantizer-dropout-PERCENT")
@@ -182,4 +182,4 @@ void register_train(CLI::App& app, Program& program) {
   command->callback([options, &program] { run_training(*options, program); });
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "db/captions_index.h"
-#include "index/hit_list.h"
+#include "remomask/error.h"
+#include "search/hit_list.h"
 
-namespace remomask {
+namespace remomask::tools {
 
 void FileOptions::add_model(CLI::App& command) {
   command.add_option("--model", model, "model file (.safetensors); default: the shipped model");
@@ -26,7 +26,7 @@ std::string FileOptions::database_path() const {
 }
 
 std::string FileOptions::index_path() const {
-  return index.empty() ? default_index_path(database_path()) : index;
+  return index.empty() ? index::default_index_path(database_path()) : index;
 }
 
 void FilterOptions::add(CLI::App& command) {
@@ -47,25 +47,26 @@ void FilterOptions::add(CLI::App& command) {
       ->excludes(plain);
 }
 
-ClipFilter FilterOptions::filter() const {
-  ClipFilter result;
+search::ClipFilter FilterOptions::filter() const {
+  search::ClipFilter result;
   result.splits = splits;
-  for (const std::string& label : labels) result.labels.push_back(parse_label_condition(label));
+  for (const std::string& label : labels)
+    result.labels.push_back(search::parse_label_condition(label));
   result.min_seconds = min_seconds;
   result.max_seconds = max_seconds;
   result.tags = tags;
   result.licences = licences;
   result.min_speed = min_speed;
   result.max_speed = max_speed;
-  result.caption_query = words.empty() ? caption_query : quote_caption_words(words);
+  result.caption_query = words.empty() ? caption_query : db::quote_caption_words(words);
   if (!words.empty() && result.caption_query.empty()) {
     throw Error("--words '" + words + "' holds no word; write letters or digits");
   }
   return result;
 }
 
-const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
-                                const std::string& kind, const std::string& model_path) {
+const nn::ModelStage& require_stage(const std::map<std::string, nn::ModelStage>& stages,
+                                    const std::string& kind, const std::string& model_path) {
   const auto found = stages.find(kind);
   if (found != stages.end()) return found->second;
   std::string held;
@@ -75,32 +76,32 @@ const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
                       "); train it with \"remomask train " + kind + "\"");
 }
 
-SearchWorkspace::SearchWorkspace(const std::map<std::string, ModelStage>& stages,
+SearchWorkspace::SearchWorkspace(const std::map<std::string, nn::ModelStage>& stages,
                                  const std::string& model_path, const std::string& database_path,
                                  const std::string& index_path)
     : retriever_(require_stage(stages, "retriever", model_path)),
-      database_(database_path, OpenMode::read_only) {
-  const ReadSnapshot snapshot(database_);
-  state_ = std::make_shared<SearchState>(
-      VectorIndex::open(index_path, database_, retriever_.hash()), database_.clips());
+      database_(database_path, db::OpenMode::read_only) {
+  const db::ReadSnapshot snapshot(database_);
+  state_ = std::make_shared<search::SearchState>(
+      index::VectorIndex::open(index_path, database_, retriever_.hash()), database_.clips());
 }
 
-std::vector<MotionHit> SearchWorkspace::search(const std::string& text, int k,
-                                               const ClipFilter& filter) const {
-  SearchScene scene;
+std::vector<search::MotionHit> SearchWorkspace::search(const std::string& text, int k,
+                                                       const search::ClipFilter& filter) const {
+  search::SearchScene scene;
   scene.state = state_;
-  if (!filter.empty()) scene.allowed = matching_clips(database_, state_->clips, filter);
-  SearchQuery query;
+  if (!filter.empty()) scene.allowed = search::matching_clips(database_, state_->clips, filter);
+  search::SearchQuery query;
   query.k = k;
-  return collect_hits(scene, query, {text_vector(retriever_, text), {}}).hits;
+  return search::collect_hits(scene, query, {text_vector(retriever_, text), {}}).hits;
 }
 
-std::vector<float> text_vector(const Retriever& retriever, const std::string& text) {
+std::vector<float> text_vector(const retriever::Retriever& retriever, const std::string& text) {
   const at::Tensor query = retriever.encode_text({text}).query.contiguous();
   return {query.data_ptr<float>(), query.data_ptr<float>() + query.numel()};
 }
 
-nlohmann::json hit_json(const MotionHit& hit) {
+nlohmann::json hit_json(const search::MotionHit& hit) {
   return {{"rank", hit.rank},
           {"clip_id", hit.clip.id},
           {"clip", hit.clip.name},
@@ -109,12 +110,12 @@ nlohmann::json hit_json(const MotionHit& hit) {
           {"source", hit.clip.source},
           {"licence", hit.clip.licence},
           {"split", hit.clip.split},
-          {"seconds", clip_seconds(hit.clip)}};
+          {"seconds", search::clip_seconds(hit.clip)}};
 }
 
-nlohmann::json hits_json(const std::vector<MotionHit>& hits) {
+nlohmann::json hits_json(const std::vector<search::MotionHit>& hits) {
   nlohmann::json list = nlohmann::json::array();
-  for (const MotionHit& hit : hits) list.push_back(hit_json(hit));
+  for (const search::MotionHit& hit : hits) list.push_back(hit_json(hit));
   return list;
 }
 
@@ -129,4 +130,4 @@ std::string evidence_line(const nlohmann::json& hits) {
   return line;
 }
 
-}  // namespace remomask
+}  // namespace remomask::tools

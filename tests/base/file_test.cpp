@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.h"
 #include "base/hash.h"
+#include "remomask/error.h"
 
 namespace remomask {
 namespace {

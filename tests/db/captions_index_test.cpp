@@ -10,13 +10,13 @@ namespace {
 class CaptionsIndexTest : public testing::Test {
  protected:
   int64_t add(const std::string& name, const std::vector<std::string>& captions) {
-    Clip clip = named_clip(name);
+    db::Clip clip = named_clip(name);
     clip.captions = captions;
     return database_.add_clip(clip, walking_motion(20, seed_++));
   }
   std::vector<int64_t> find(const std::string& query, int limit = -1) {
     std::vector<int64_t> ids;
-    for (const CaptionMatch& match : database_.match_captions(query, limit)) {
+    for (const db::CaptionMatch& match : database_.match_captions(query, limit)) {
       ids.push_back(match.clip_id);
     }
     return ids;
@@ -27,7 +27,7 @@ class CaptionsIndexTest : public testing::Test {
 
   using Ids = std::vector<int64_t>;
   TestFolder folder_;
-  Database database_{folder_ / "d", OpenMode::create};
+  db::Database database_{folder_ / "d", db::OpenMode::create};
   int seed_ = 0;
 };
 
@@ -52,7 +52,7 @@ TEST_F(CaptionsIndexTest, FindsStemsWithoutCaseAndAccentsBestFirst) {
 TEST_F(CaptionsIndexTest, FollowsEveryChangeOfTheCaptions) {
   const int64_t a = add("a", {"a person walks", "a walk"});
   const int64_t b = add("b", {"a person runs"});
-  ClipChanges changes;
+  db::ClipChanges changes;
   changes.captions = {"a person crawls"};
   database_.update_clip(a, changes);
   EXPECT_EQ(find("walk"), (Ids{}));
@@ -69,7 +69,7 @@ TEST_F(CaptionsIndexTest, FollowsEveryChangeOfTheCaptions) {
 }
 
 TEST_F(CaptionsIndexTest, LastPossibleCaptionBelongsToItsClip) {
-  std::vector<std::string> captions(kCaptionsOfClip, "walks");
+  std::vector<std::string> captions(db::kCaptionsOfClip, "walks");
   captions.back() = "jumps";
   const int64_t a = add("a", captions);
   add("b", {"walks"});
@@ -91,18 +91,18 @@ TEST_F(CaptionsIndexTest, BrokenQueriesNameThePlace) {
 
 TEST_F(CaptionsIndexTest, QuotedWordsNeverFail) {
   const int64_t a = add("a", {"a person's \"moonwalk\" AND a turn - to the left; 90 degrees"});
-  EXPECT_EQ(quote_caption_words("walk  and\tturn"), "\"walk\" \"and\" \"turn\"");
-  EXPECT_EQ(quote_caption_words("say \"hi\""), "\"say\" \"\"\"hi\"\"\"");
-  EXPECT_EQ(quote_caption_words(" - * ( "), "");
+  EXPECT_EQ(db::quote_caption_words("walk  and\tturn"), "\"walk\" \"and\" \"turn\"");
+  EXPECT_EQ(db::quote_caption_words("say \"hi\""), "\"say\" \"\"\"hi\"\"\"");
+  EXPECT_EQ(db::quote_caption_words(" - * ( "), "");
   for (const char* text : {"person's", "moonwalk AND turn", "\"moonwalk", "turn - left",
                            "NOT-a turn", "left; 90", "text: turn"}) {
-    const std::string query = quote_caption_words(text);
+    const std::string query = db::quote_caption_words(text);
     EXPECT_EQ(error(query), "") << query;
   }
-  EXPECT_EQ(find(quote_caption_words("LEFT; moonwalk \"person's\"")), (Ids{a}));
-  EXPECT_EQ(find(quote_caption_words("turn NOT left")), (Ids{}));
+  EXPECT_EQ(find(db::quote_caption_words("LEFT; moonwalk \"person's\"")), (Ids{a}));
+  EXPECT_EQ(find(db::quote_caption_words("turn NOT left")), (Ids{}));
   // A dash that is no ASCII is a word to us and none to SQLite: it asks for nothing.
-  EXPECT_EQ(error(quote_caption_words("turn \xe2\x80\x94 left")), "");
+  EXPECT_EQ(error(db::quote_caption_words("turn \xe2\x80\x94 left")), "");
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 class CheckTest : public testing::Test {
  protected:
   void SetUp() override {
-    Database database(path_, OpenMode::create);
+    db::Database database(path_, db::OpenMode::create);
     for (const char* name : {"a", "b", "c"}) {
       const int64_t id =
           database.add_clip(named_clip(name), walking_motion(24, static_cast<int>(*name)));
@@ -21,7 +21,7 @@ class CheckTest : public testing::Test {
   }
   /// Of clip b alone; "" when it has none.
   std::string defect() {
-    const CheckReport report = check_database(path_);
+    const db::CheckReport report = db::check_database(path_);
     if (report.defects.empty()) return "";
     EXPECT_EQ(report.defects.size(), 1u);
     EXPECT_EQ(report.defects[0].clip_id, 2) << report.defects[0].what;
@@ -44,7 +44,7 @@ class CheckTest : public testing::Test {
 };
 
 TEST_F(CheckTest, CountsWhatIsInOrder) {
-  const CheckReport report = check_database(path_);
+  const db::CheckReport report = db::check_database(path_);
   EXPECT_EQ(report.clips, 3);
   EXPECT_EQ(report.captions, 6);
   EXPECT_EQ(report.embeddings, 3);
@@ -87,7 +87,7 @@ TEST_F(CheckTest, FindsAFullTextIndexOutOfStepAndUpgradeMendsIt) {
   for (const char* sql : {break_it[0], break_it[2]}) {
     run_sql(path_, sql);
     EXPECT_NE(defect().find("full-text index"), std::string::npos) << sql;
-    upgrade_database(path_);
+    db::upgrade_database(path_);
     EXPECT_EQ(defect(), "");
   }
   expect_defect(break_it[1], "full-text index");
@@ -95,13 +95,13 @@ TEST_F(CheckTest, FindsAFullTextIndexOutOfStepAndUpgradeMendsIt) {
 
 TEST_F(CheckTest, FindsDamageOfTheWhole) {
   run_sql(path_, "PRAGMA foreign_keys = OFF; DELETE FROM clip WHERE id = 3");
-  CheckReport report = check_database(path_);
+  db::CheckReport report = db::check_database(path_);
   EXPECT_FALSE(report.defects.empty());
   EXPECT_NE(report.defects[0].what.find("a clip that is not there"), std::string::npos);
   run_sql(path_, "DELETE FROM fact WHERE key = 'uuid'");
-  report = check_database(path_);
+  report = db::check_database(path_);
   bool found = false;
-  for (const Defect& defect : report.defects) {
+  for (const db::Defect& defect : report.defects) {
     found |= defect.what.find("uuid") != std::string::npos;
   }
   EXPECT_TRUE(found);
@@ -113,9 +113,9 @@ TEST_F(CheckTest, DamagedPagesAreReportedAndDoNotEndTheCheck) {
   file.seekp(static_cast<std::streamoff>(size / 2 / 4096 * 4096));
   file << std::string(8192, '\x5a');
   file.close();
-  EXPECT_FALSE(check_database(path_).defects.empty());
+  EXPECT_FALSE(db::check_database(path_).defects.empty());
   std::ofstream(folder_ / "garbage") << std::string(5000, 'x');
-  EXPECT_THROW(check_database(folder_ / "garbage"), Error);
+  EXPECT_THROW(db::check_database(folder_ / "garbage"), Error);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "db/database.h"
 #include "db/database_impl.h"
 #include "db/sqlite.h"
+#include "motion/vector.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
@@ -19,30 +20,30 @@ class ClipChangesTest : public testing::Test {
     database_.store_embeddings("r", {embedding(0), embedding(1), embedding(2)});
     database_.store_embeddings("s", {embedding(0), embedding(1)});
   }
-  ClipEmbedding embedding(size_t clip, float value = 1.f) const {
+  db::ClipEmbedding embedding(size_t clip, float value = 1.f) const {
     return {ids_[clip], {value, static_cast<float>(clip)}, {value}, {value}};
   }
-  bool change(size_t clip, const ClipChanges& changes) {
+  bool change(size_t clip, const db::ClipChanges& changes) {
     return database_.update_clip(ids_[clip], changes);
   }
 
   using Ids = std::vector<int64_t>;
   TestFolder folder_;
-  Database database_{folder_ / "d", OpenMode::create};
+  db::Database database_{folder_ / "d", db::OpenMode::create};
   Ids ids_;
 };
 
 TEST_F(ClipChangesTest, WhatIsNotGivenStays) {
-  const Clip before = database_.clip(ids_[0]);
+  const db::Clip before = database_.clip(ids_[0]);
   const int64_t generation = database_.generation();
-  ClipChanges changes;
+  db::ClipChanges changes;
   changes.split = "val";
   changes.licence = "MIT";
   changes.tags = {"new", "good", "new"};
   changes.labels = nlohmann::json{{"content", "run"}, {"actions", nullptr}, {"count", 2}};
   EXPECT_TRUE(change(0, changes));
   EXPECT_EQ(database_.generation(), generation + 1);
-  const Clip after = database_.clip(ids_[0]);
+  const db::Clip after = database_.clip(ids_[0]);
   EXPECT_EQ(after.split, "val");
   EXPECT_EQ(after.licence, "MIT");
   EXPECT_EQ(after.tags, (std::vector<std::string>{"good", "new"}));
@@ -58,7 +59,7 @@ TEST_F(ClipChangesTest, WhatIsNotGivenStays) {
 }
 
 TEST_F(ClipChangesTest, NewCaptionsTakeTheVectorsOfTheClipWithThem) {
-  ClipChanges changes;
+  db::ClipChanges changes;
   changes.captions = database_.clip(ids_[1]).captions;
   EXPECT_FALSE(change(1, changes));
   EXPECT_EQ(database_.embedded_clips("r"), ids_);
@@ -70,9 +71,9 @@ TEST_F(ClipChangesTest, NewCaptionsTakeTheVectorsOfTheClipWithThem) {
 }
 
 TEST_F(ClipChangesTest, NothingIsStoredOfChangesThatMakeNoSense) {
-  const auto before = describe_database(database_);
+  const auto before = tools::describe_database(database_);
   const int64_t generation = database_.generation();
-  ClipChanges bad_split, bad_labels, bad_tag;
+  db::ClipChanges bad_split, bad_labels, bad_tag;
   bad_split.captions = {"new"};
   bad_split.split = "training";
   bad_labels.licence = "MIT";
@@ -85,13 +86,13 @@ TEST_F(ClipChangesTest, NothingIsStoredOfChangesThatMakeNoSense) {
   EXPECT_THROW(change(0, bad_split), Error);
   EXPECT_THROW(change(0, bad_labels), Error);
   EXPECT_THROW(database_.update_clip(ids_[2] + 1, {}), Error);
-  EXPECT_EQ(describe_database(database_), before);
+  EXPECT_EQ(tools::describe_database(database_), before);
   EXPECT_EQ(database_.generation(), generation);
   EXPECT_EQ(database_.embedded_clips("r"), ids_);
 }
 
 TEST_F(ClipChangesTest, RemovedClipsTakeTagsAndVectorsAndTheirIdsNeverReturn) {
-  ClipChanges changes;
+  db::ClipChanges changes;
   changes.tags = {"x"};
   change(2, changes);
   const int64_t generation = database_.generation();
@@ -101,7 +102,7 @@ TEST_F(ClipChangesTest, RemovedClipsTakeTagsAndVectorsAndTheirIdsNeverReturn) {
   database_.remove({ids_[0], ids_[2]});
   EXPECT_EQ(database_.generation(), generation + 1);
   EXPECT_EQ(database_.embedded_clips("r"), (Ids{ids_[1]}));
-  const SqliteConnection connection(folder_ / "d", SqliteMode::read_only);
+  const db::SqliteConnection connection(folder_ / "d", db::SqliteMode::read_only);
   EXPECT_EQ(connection.integer("SELECT count(*) FROM tag"), 0);
   EXPECT_GT(database_.add_clip(named_clip("c"), walking_motion(30, 2)), ids_[2]);
 }
@@ -124,8 +125,9 @@ TEST_F(ClipChangesTest, AddedVectorsLeaveThoseOfOtherClips) {
 }
 
 TEST_F(ClipChangesTest, EmbeddedClipsReadsAnIndexAlone) {
-  const SqliteConnection connection(folder_ / "d", SqliteMode::read_only);
-  SqliteStatement plan(connection, (std::string("EXPLAIN QUERY PLAN ") + kEmbeddedClips).c_str());
+  const db::SqliteConnection connection(folder_ / "d", db::SqliteMode::read_only);
+  db::SqliteStatement plan(connection,
+                           (std::string("EXPLAIN QUERY PLAN ") + db::kEmbeddedClips).c_str());
   std::string text;
   while (plan.step()) text += plan.text(3) + "; ";
   EXPECT_NE(text.find("USING COVERING INDEX embedding_by_retriever"), std::string::npos) << text;
@@ -140,7 +142,7 @@ TEST_F(ClipChangesTest, TheLogOfVectorsSaysWhatChangedSince) {
   };
   EXPECT_EQ(changes(start), std::pair(Ids{}, Ids{}));
   EXPECT_EQ(changes(0).first, database_.embedded_clips("r"));
-  ClipChanges captions, tags;
+  db::ClipChanges captions, tags;
   captions.captions = {"someone waves."};
   tags.tags = {"good"};
   database_.update_clip(ids_[1], tags);  // no vector changes
@@ -161,9 +163,9 @@ TEST_F(ClipChangesTest, TheLogOfVectorsSaysWhatChangedSince) {
 }
 
 TEST_F(ClipChangesTest, TheLogOfVectorsIsReadByIndexesAlone) {
-  const SqliteConnection connection(folder_ / "d", SqliteMode::read_only);
-  SqliteStatement plan(connection,
-                       (std::string("EXPLAIN QUERY PLAN ") + kEmbeddingChanges).c_str());
+  const db::SqliteConnection connection(folder_ / "d", db::SqliteMode::read_only);
+  db::SqliteStatement plan(connection,
+                           (std::string("EXPLAIN QUERY PLAN ") + db::kEmbeddingChanges).c_str());
   std::string text;
   while (plan.step()) text += plan.text(3) + "; ";
   EXPECT_NE(text.find("(retriever_hash=? AND generation>?)"), std::string::npos) << text;
@@ -188,7 +190,7 @@ TEST_F(ClipChangesTest, CopiesThatAreChangedApartHaveOtherWriters) {
   EXPECT_EQ(writer.size(), 36u);
   EXPECT_EQ(database_.writer_of(0), "");
   run_sql(folder_ / "d", ("VACUUM INTO '" + folder_ / "copy" + "'").c_str());
-  Database copy(folder_ / "copy", OpenMode::read_write);
+  db::Database copy(folder_ / "copy", db::OpenMode::read_write);
   database_.remove({ids_[0]});
   copy.remove({ids_[1]});
   copy.remove({ids_[2]});
@@ -200,7 +202,7 @@ TEST_F(ClipChangesTest, CopiesThatAreChangedApartHaveOtherWriters) {
   EXPECT_NE(copy.writer_of(common + 1), writer);
   EXPECT_EQ(copy.writer_of(common + 2), copy.writer_of(common + 1));
   {
-    Database second(folder_ / "d", OpenMode::read_write);
+    db::Database second(folder_ / "d", db::OpenMode::read_write);
     second.remove({ids_[1]});
   }
   EXPECT_NE(database_.writer_of(common + 2), writer);
@@ -209,19 +211,19 @@ TEST_F(ClipChangesTest, CopiesThatAreChangedApartHaveOtherWriters) {
 
 TEST_F(ClipChangesTest, SpeedIsThePathOverTheGroundInMetresASecond) {
   Motion motion(3, 22);
-  motion.set(1, 0, Vec3(0.3, 5, 0.4));  // half a metre in a twentieth of a second
-  motion.set(2, 0, Vec3(0.3, 9, 0.4));
-  EXPECT_NEAR(mean_root_speed(motion), 5.0, 1e-6);
-  EXPECT_EQ(mean_root_speed(Motion(1, 22)), 0);
+  set_joint_position(motion, 1, 0, Vec3(0.3, 5, 0.4));  // half a metre in a twentieth of a second
+  set_joint_position(motion, 2, 0, Vec3(0.3, 9, 0.4));
+  EXPECT_NEAR(db::mean_root_speed(motion), 5.0, 1e-6);
+  EXPECT_EQ(db::mean_root_speed(Motion(1, 22)), 0);
   const int64_t id = database_.add_clip(named_clip("speed"), motion);
   EXPECT_NEAR(database_.clip(id).speed, 5.0, 1e-6);
 }
 
 TEST_F(ClipChangesTest, SnapshotSeesOneStateWhileAnotherProgramWrites) {
-  const Database reader(folder_ / "d", OpenMode::read_only);
+  const db::Database reader(folder_ / "d", db::OpenMode::read_only);
   {
-    const ReadSnapshot snapshot(reader);
-    const ReadSnapshot inner(reader);
+    const db::ReadSnapshot snapshot(reader);
+    const db::ReadSnapshot inner(reader);
     const int64_t generation = reader.generation();
     database_.remove({ids_[0]});
     EXPECT_EQ(reader.generation(), generation);
@@ -231,7 +233,7 @@ TEST_F(ClipChangesTest, SnapshotSeesOneStateWhileAnotherProgramWrites) {
   }
   EXPECT_EQ(reader.clips().size(), 2u);
   {
-    const ReadSnapshot snapshot(database_);
+    const db::ReadSnapshot snapshot(database_);
     EXPECT_THROW(database_.remove({ids_[1]}), Error);
     EXPECT_EQ(database_.clip_count(), 2);
   }

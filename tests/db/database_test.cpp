@@ -26,7 +26,7 @@ TEST(Database, KeepsClipsOverReopening) {
   TestFolder folder;
   const std::string path = folder / "motions.sqlite";
   const Motion motion = small_motion(30, 1.f);
-  Clip clip = named_clip("01_01#2");
+  db::Clip clip = named_clip("01_01#2");
   clip.start_frame = 312;
   clip.split = "val";
   clip.mirrored = true;
@@ -35,15 +35,15 @@ TEST(Database, KeepsClipsOverReopening) {
   std::string uuid;
   int64_t id = 0;
   {
-    Database database(path, OpenMode::create);
+    db::Database database(path, db::OpenMode::create);
     uuid = database.uuid();
     id = database.add_clip(clip, motion);
   }
-  const Database database(path, OpenMode::read_only);
+  const db::Database database(path, db::OpenMode::read_only);
   EXPECT_EQ(database.uuid(), uuid);
   EXPECT_EQ(uuid.size(), 36u);
   EXPECT_EQ(database.clip_count(), 1);
-  const Clip stored = database.clip(id);
+  const db::Clip stored = database.clip(id);
   EXPECT_EQ(stored.name, clip.name);
   EXPECT_EQ(stored.source, clip.source);
   EXPECT_EQ(stored.source_file, clip.source_file);
@@ -55,31 +55,31 @@ TEST(Database, KeepsClipsOverReopening) {
   EXPECT_EQ(stored.frames, 30);
   EXPECT_EQ(stored.captions, clip.captions);
   EXPECT_EQ(stored.labels, clip.labels);
-  EXPECT_EQ(stored.content_hash, clip_content_hash(motion));
+  EXPECT_EQ(stored.content_hash, db::clip_content_hash(motion));
   EXPECT_EQ(database.motion(id).positions, motion.positions);
   EXPECT_EQ(database.clips().at(0).captions, clip.captions);
 }
 
 TEST(Database, TwoDatabasesHaveTwoIdentities) {
   TestFolder folder;
-  EXPECT_NE(Database(folder / "a", OpenMode::create).uuid(),
-            Database(folder / "b", OpenMode::create).uuid());
+  EXPECT_NE(db::Database(folder / "a", db::OpenMode::create).uuid(),
+            db::Database(folder / "b", db::OpenMode::create).uuid());
 }
 
 TEST(Database, FindsByNameAndContent) {
   TestFolder folder;
-  Database database(folder / "d", OpenMode::create);
+  db::Database database(folder / "d", db::OpenMode::create);
   const int64_t first = database.add_clip(named_clip("a"), small_motion(20, 0.f));
   const int64_t second = database.add_clip(named_clip("b"), small_motion(20, 1.f));
   EXPECT_EQ(database.find_name("b"), second);
   EXPECT_EQ(database.find_name("c"), std::nullopt);
-  EXPECT_EQ(database.find_content(clip_content_hash(small_motion(20, 0.f))), first);
+  EXPECT_EQ(database.find_content(db::clip_content_hash(small_motion(20, 0.f))), first);
   EXPECT_EQ(database.find_content("00"), std::nullopt);
 }
 
 TEST(Database, RefusesTheSameNameOrMotion) {
   TestFolder folder;
-  Database database(folder / "d", OpenMode::create);
+  db::Database database(folder / "d", db::OpenMode::create);
   database.add_clip(named_clip("a"), small_motion(20, 0.f));
   const int64_t generation = database.generation();
   EXPECT_NE(error_of([&] {
@@ -96,8 +96,8 @@ TEST(Database, RefusesTheSameNameOrMotion) {
 
 TEST(Database, RefusesClipsThatMakeNoSense) {
   TestFolder folder;
-  Database database(folder / "d", OpenMode::create);
-  Clip clip = named_clip("a");
+  db::Database database(folder / "d", db::OpenMode::create);
+  db::Clip clip = named_clip("a");
   clip.split = "training";
   EXPECT_THROW(database.add_clip(clip, small_motion(20, 0.f)), Error);
   Motion cut = small_motion(20, 0.f);
@@ -112,16 +112,16 @@ TEST(Database, RefusesClipsThatMakeNoSense) {
 
 TEST(Database, HashSeesATenthOfAMillimetreAndNoLess) {
   Motion motion = small_motion(20, 0.f);
-  const std::string hash = clip_content_hash(motion);
+  const std::string hash = db::clip_content_hash(motion);
   motion.positions[7] += 0.00002f;
-  EXPECT_EQ(clip_content_hash(motion), hash);
+  EXPECT_EQ(db::clip_content_hash(motion), hash);
   motion.positions[7] += 0.0002f;
-  EXPECT_NE(clip_content_hash(motion), hash);
+  EXPECT_NE(db::clip_content_hash(motion), hash);
 }
 
 TEST(Database, RolledBackTransactionLeavesNothing) {
   TestFolder folder;
-  Database database(folder / "d", OpenMode::create);
+  db::Database database(folder / "d", db::OpenMode::create);
   const int64_t kept = database.add_clip(named_clip("a"), small_motion(20, 0.f));
   const int64_t generation = database.generation();
   database.begin();
@@ -143,21 +143,21 @@ TEST(Database, UncommittedWorkIsLostWithTheProgram) {
   TestFolder folder;
   const std::string path = folder / "d";
   {
-    Database database(path, OpenMode::create);
+    db::Database database(path, db::OpenMode::create);
     database.begin();
     database.add_clip(named_clip("a"), small_motion(20, 0.f));
     database.commit();
     database.begin();
     database.add_clip(named_clip("b"), small_motion(20, 1.f));
   }
-  const Database database(path, OpenMode::read_only);
+  const db::Database database(path, db::OpenMode::read_only);
   EXPECT_TRUE(database.find_name("a"));
   EXPECT_FALSE(database.find_name("b"));
 }
 
 TEST(Database, RemovedClipsTakeEverythingWithThemAndTheirIdsNeverReturn) {
   TestFolder folder;
-  Database database(folder / "d", OpenMode::create);
+  db::Database database(folder / "d", db::OpenMode::create);
   const int64_t id = database.add_clip(named_clip("a"), small_motion(20, 0.f));
   database.store_embeddings("r", {{id, {1.f}, {1.f}, {1.f}}});
   EXPECT_EQ(database.remove_clips("test", "other"), 0);
@@ -170,7 +170,7 @@ TEST(Database, RemovedClipsTakeEverythingWithThemAndTheirIdsNeverReturn) {
 
 TEST(Database, EmbeddingsRoundTripAndAreReplaced) {
   TestFolder folder;
-  Database database(folder / "d", OpenMode::create);
+  db::Database database(folder / "d", db::OpenMode::create);
   const int64_t a = database.add_clip(named_clip("a"), small_motion(20, 0.f));
   const int64_t b = database.add_clip(named_clip("b"), small_motion(20, 1.f));
   const int64_t before = database.generation();
@@ -194,7 +194,7 @@ TEST(Database, EmbeddingsRoundTripAndAreReplaced) {
 
 TEST(Database, NotesOfImportsAndFacts) {
   TestFolder folder;
-  Database database(folder / "d", OpenMode::create);
+  db::Database database(folder / "d", db::OpenMode::create);
   const int64_t generation = database.generation();
   database.note_imported_file("s", "a.bvh", "1", "stored");
   EXPECT_TRUE(database.file_is_imported("s", "a.bvh", "1"));
@@ -213,25 +213,27 @@ TEST(Database, NotesOfImportsAndFacts) {
 TEST(Database, MissingFileFolderAndGarbageAreNamed) {
   TestFolder folder;
   EXPECT_NE(error_of([&] {
-              Database(folder / "none", OpenMode::read_write);
+              db::Database(folder / "none", db::OpenMode::read_write);
             }).find("there is no such database"),
             std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder / "none"));
-  EXPECT_NE(error_of([&] { Database(folder.path(), OpenMode::create); }).find("is a folder"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of([&] { db::Database(folder.path(), db::OpenMode::create); }).find("is a folder"),
+      std::string::npos);
   EXPECT_NE(error_of([&] {
-              Database(folder / "no/such/d", OpenMode::create);
+              db::Database(folder / "no/such/d", db::OpenMode::create);
             }).find("check that the path exists"),
             std::string::npos);
   const std::string garbage = folder / "garbage";
   std::ofstream(garbage) << std::string(4096, 'x');
-  for (const OpenMode mode : {OpenMode::read_only, OpenMode::read_write, OpenMode::create}) {
-    EXPECT_NE(error_of([&] { Database(garbage, mode); }).find("not a motion database"),
+  for (const db::OpenMode mode :
+       {db::OpenMode::read_only, db::OpenMode::read_write, db::OpenMode::create}) {
+    EXPECT_NE(error_of([&] { db::Database(garbage, mode); }).find("not a motion database"),
               std::string::npos);
   }
   std::ofstream(folder / "empty");
   EXPECT_NE(error_of([&] {
-              Database(folder / "empty", OpenMode::read_write);
+              db::Database(folder / "empty", db::OpenMode::read_write);
             }).find("is not a motion database"),
             std::string::npos);
 }
@@ -240,12 +242,14 @@ TEST(Database, OtherProgramsAndNewerVersionsAreRefused) {
   TestFolder folder;
   run_sql(folder / "other", "CREATE TABLE t (x); INSERT INTO t VALUES (1)");
   EXPECT_NE(error_of([&] {
-              Database(folder / "other", OpenMode::create);
+              db::Database(folder / "other", db::OpenMode::create);
             }).find("is not a motion database"),
             std::string::npos);
-  { Database database(folder / "new", OpenMode::create); }
+  { db::Database database(folder / "new", db::OpenMode::create); }
   run_sql(folder / "new", "PRAGMA user_version = 4");
-  EXPECT_NE(error_of([&] { Database(folder / "new", OpenMode::read_only); }).find("newer version"),
+  EXPECT_NE(error_of([&] {
+              db::Database(folder / "new", db::OpenMode::read_only);
+            }).find("newer version"),
             std::string::npos);
 }
 
@@ -254,18 +258,20 @@ TEST(Database, DamageIsReported) {
   const std::string path = folder / "d";
   int64_t id = 0;
   {
-    Database database(path, OpenMode::create);
+    db::Database database(path, db::OpenMode::create);
     id = database.add_clip(named_clip("a"), small_motion(20, 0.f));
   }
   run_sql(path, "UPDATE motion SET positions = x'0102030405'");
-  EXPECT_NE(error_of([&] { Database(path, OpenMode::read_only).motion(id); }).find("damaged"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of([&] { db::Database(path, db::OpenMode::read_only).motion(id); }).find("damaged"),
+      std::string::npos);
   const auto size = std::filesystem::file_size(path);
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(4096);
   file << std::string(size - 4096, '\x5a');
   file.close();
-  const std::string message = error_of([&] { Database(path, OpenMode::read_only).clips(); });
+  const std::string message =
+      error_of([&] { db::Database(path, db::OpenMode::read_only).clips(); });
   EXPECT_NE(message.find("damaged"), std::string::npos) << message;
 }
 
@@ -273,8 +279,8 @@ TEST(Database, ReadOnlyFilesCanBeReadAndNotWritten) {
   TestFolder folder;
   std::filesystem::create_directory(folder / "shelf");
   const std::string path = folder / "shelf/d";
-  { Database(path, OpenMode::create).add_clip(named_clip("a"), small_motion(20, 0.f)); }
-  Database database(path, OpenMode::read_only);
+  { db::Database(path, db::OpenMode::create).add_clip(named_clip("a"), small_motion(20, 0.f)); }
+  db::Database database(path, db::OpenMode::read_only);
   EXPECT_NE(error_of([&] {
               database.add_clip(named_clip("b"), small_motion(20, 1.f));
             }).find("cannot be written"),
@@ -282,16 +288,17 @@ TEST(Database, ReadOnlyFilesCanBeReadAndNotWritten) {
   if (::geteuid() == 0) return;  // permissions do not bind the superuser
   ::chmod(path.c_str(), 0444);
   ::chmod((folder / "shelf").c_str(), 0555);
-  EXPECT_EQ(Database(path, OpenMode::read_only).clip_count(), 1);
-  EXPECT_NE(error_of([&] { Database(path, OpenMode::read_write); }).find("cannot be written"),
-            std::string::npos);
+  EXPECT_EQ(db::Database(path, db::OpenMode::read_only).clip_count(), 1);
+  EXPECT_NE(
+      error_of([&] { db::Database(path, db::OpenMode::read_write); }).find("cannot be written"),
+      std::string::npos);
   ::chmod((folder / "shelf").c_str(), 0755);
 }
 
 TEST(Database, JournalOfAKilledWriterIsPlayedBackByReaders) {
   TestFolder folder;
   {
-    Database database(folder / "d", OpenMode::create);
+    db::Database database(folder / "d", db::OpenMode::create);
     for (int i = 0; i < 8; ++i) {
       database.add_clip(named_clip("clip" + std::to_string(i)), walking_motion(60, i));
     }
@@ -313,7 +320,7 @@ TEST(Database, JournalOfAKilledWriterIsPlayedBackByReaders) {
   run("ROLLBACK");
   sqlite3_close(writer);
 
-  const Database killed(folder / "killed", OpenMode::read_only);
+  const db::Database killed(folder / "killed", db::OpenMode::read_only);
   EXPECT_EQ(killed.clip_count(), 8);
   EXPECT_TRUE(killed.find_name("clip0").has_value());
   const auto id = killed.find_name("clip7");
@@ -325,11 +332,11 @@ TEST(Database, JournalOfAKilledWriterIsPlayedBackByReaders) {
 TEST(Database, ReadersSeeTheLastCommitAndASecondWriterIsTold) {
   TestFolder folder;
   const std::string path = folder / "d";
-  Database writer(path, OpenMode::create);
+  db::Database writer(path, db::OpenMode::create);
   writer.begin();
   writer.add_clip(named_clip("a"), small_motion(20, 0.f));
-  EXPECT_EQ(Database(path, OpenMode::read_only).clip_count(), 0);
-  Database second(path, OpenMode::read_write);
+  EXPECT_EQ(db::Database(path, db::OpenMode::read_only).clip_count(), 0);
+  db::Database second(path, db::OpenMode::read_write);
   EXPECT_NE(error_of([&] { second.begin(); }).find("another program is writing"),
             std::string::npos);
   writer.commit();
@@ -338,7 +345,7 @@ TEST(Database, ReadersSeeTheLastCommitAndASecondWriterIsTold) {
 
 TEST(Database, FullDiskIsNamed) {
   TestFolder folder;
-  const SqliteConnection connection(folder / "d", SqliteMode::create);
+  const db::SqliteConnection connection(folder / "d", db::SqliteMode::create);
   connection.execute("CREATE TABLE t (x)");
   // SQLite's own limit of pages raises the same error as a full disk.
   connection.execute("PRAGMA max_page_count = 10");

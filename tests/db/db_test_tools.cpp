@@ -1,4 +1,5 @@
 #include "tests/db/db_test_tools.h"
+#include "motion/vector.h"
 
 #include <sqlite3.h>
 #include <stdlib.h>
@@ -24,20 +25,20 @@ Motion walking_motion(int frames, int seed) {
     std::vector<Vec3> joints(static_cast<size_t>(skeleton.joints()), Vec3(0, 1, step * frame));
     for (int joint = 1; joint < skeleton.joints(); ++joint) {
       const auto j = static_cast<size_t>(joint);
-      Vec3 direction = skeleton.rest_directions[j];
+      Vec3 direction = rest_direction(skeleton, j);
       direction.z() += swing * std::sin(phase + joint);
       joints[j] = joints[static_cast<size_t>(skeleton.parents[j])] +
                   skeleton.bone_lengths[j] * direction.normalized();
     }
     for (int joint = 0; joint < skeleton.joints(); ++joint) {
-      motion.set(frame, joint, joints[static_cast<size_t>(joint)]);
+      set_joint_position(motion, frame, joint, joints[static_cast<size_t>(joint)]);
     }
   }
-  return canonicalize(motion, skeleton);
+  return motion::canonicalize(motion, skeleton);
 }
 
-Clip named_clip(const std::string& name) {
-  Clip clip;
+db::Clip named_clip(const std::string& name) {
+  db::Clip clip;
   clip.name = name;
   clip.source = "test";
   clip.source_file = name;
@@ -57,9 +58,9 @@ void run_sql(const std::string& path, const char* sql) {
   sqlite3_close(handle);
 }
 
-nlohmann::json describe_database(const Database& database) {
+nlohmann::json describe_database(const db::Database& database) {
   nlohmann::json all = nlohmann::json::array();
-  for (const Clip& clip : database.clips()) {
+  for (const db::Clip& clip : database.clips()) {
     all.push_back({clip.name, clip.source, clip.source_file, clip.start_frame, clip.split,
                    clip.licence, clip.content_hash, clip.group, clip.mirrored, clip.skeleton,
                    clip.frames, clip.captions, clip.labels, clip.tags,

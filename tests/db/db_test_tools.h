@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "base/error.h"
 #include "db/database.h"
-#include "motion/motion.h"
+#include "remomask/error.h"
+#include "remomask/motion.h"
 
 namespace remomask {
 
@@ -30,7 +30,7 @@ class TestFolder {
 Motion walking_motion(int frames, int seed);
 
 /// A clip with this name and sensible other fields.
-Clip named_clip(const std::string& name);
+db::Clip named_clip(const std::string& name);
 
 /// What `function` throws as Error; "" when it does not.
 template <typename Function>
@@ -47,6 +47,6 @@ std::string error_of(Function function) {
 void run_sql(const std::string& path, const char* sql);
 
 /// All clips of a database without the fields that the order of storing gives.
-nlohmann::json describe_database(const Database& database);
+nlohmann::json describe_database(const db::Database& database);
 
 }  // namespace remomask

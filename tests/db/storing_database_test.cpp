@@ -27,11 +27,11 @@ class StoringDatabaseTest : public testing::Test {
 };
 
 TEST_F(StoringDatabaseTest, LeavesNothingWhenNothingWasStored) {
-  { StoringDatabase storing(path_); }
+  { db::StoringDatabase storing(path_); }
   EXPECT_TRUE(files().empty());
   EXPECT_THROW(
       {
-        StoringDatabase storing(path_);
+        db::StoringDatabase storing(path_);
         (*storing).begin();
         (*storing).add_clip(named_clip("a"), walking_motion(30, 1));
         throw Error("before the commit");
@@ -42,28 +42,28 @@ TEST_F(StoringDatabaseTest, LeavesNothingWhenNothingWasStored) {
 
 TEST_F(StoringDatabaseTest, KeepsWhatWasStored) {
   {
-    StoringDatabase storing(path_);
+    db::StoringDatabase storing(path_);
     (*storing).add_clip(named_clip("a"), walking_motion(30, 1));
   }
-  EXPECT_EQ(Database(path_, OpenMode::read_only).clip_count(), 1);
-  { StoringDatabase storing(path_); }
-  EXPECT_EQ(Database(path_, OpenMode::read_only).clip_count(), 1);
+  EXPECT_EQ(db::Database(path_, db::OpenMode::read_only).clip_count(), 1);
+  { db::StoringDatabase storing(path_); }
+  EXPECT_EQ(db::Database(path_, db::OpenMode::read_only).clip_count(), 1);
 }
 
 TEST_F(StoringDatabaseTest, KeepsAnEmptyDatabaseThatWasThere) {
-  { Database database(path_, OpenMode::create); }
-  { StoringDatabase storing(path_); }
+  { db::Database database(path_, db::OpenMode::create); }
+  { db::StoringDatabase storing(path_); }
   EXPECT_TRUE(fs::exists(path_));
 }
 
 TEST_F(StoringDatabaseTest, KeepsWhatAnotherProgramUses) {
-  auto storing = std::make_unique<StoringDatabase>(path_);
-  Database other(path_, OpenMode::read_write);
+  auto storing = std::make_unique<db::StoringDatabase>(path_);
+  db::Database other(path_, db::OpenMode::read_write);
   EXPECT_EQ(other.clip_count(), 0);
   storing.reset();
   ASSERT_TRUE(fs::exists(path_));
   other.add_clip(named_clip("a"), walking_motion(30, 1));
-  EXPECT_EQ(Database(path_, OpenMode::read_only).clip_count(), 1);
+  EXPECT_EQ(db::Database(path_, db::OpenMode::read_only).clip_count(), 1);
 }
 
 }  // namespace

@@ -28,16 +28,16 @@ void require(bool holds, const std::string& what) {
 // Every commit of the writer keeps: all clips are embedded, and each has the
 // word "one" in exactly one of its two captions.
 void write_until(const std::string& path, Clock::time_point end) {
-  Database database(path, OpenMode::read_write);
+  db::Database database(path, db::OpenMode::read_write);
   for (int n = 0; Clock::now() < end; ++n) {
     database.begin();
-    Clip clip = named_clip("clip " + std::to_string(n));
+    db::Clip clip = named_clip("clip " + std::to_string(n));
     clip.captions = {"one walk", "nothing"};
     const int64_t id = database.add_clip(clip, walking_motion(20 + n % 50, n));
     database.add_embeddings("r", {{id, {1.f}, {1.f}, {1.f}}});
     const auto ids = database.embedded_clips("r");
     if (n % 3 == 0) {
-      ClipChanges changes;
+      db::ClipChanges changes;
       changes.captions = {"nothing", "one " + std::to_string(n)};
       changes.tags = {"t" + std::to_string(n % 5)};
       const int64_t changed = ids[static_cast<size_t>(n) % ids.size()];
@@ -51,25 +51,25 @@ void write_until(const std::string& path, Clock::time_point end) {
 
 /// Returns how many different states were seen.
 int read_until(const std::string& path, Clock::time_point end) {
-  const Database database(path, OpenMode::read_only);
+  const db::Database database(path, db::OpenMode::read_only);
   int64_t last = -1;
   int states = 0;
   while (Clock::now() < end) {
-    const ReadSnapshot snapshot(database);
+    const db::ReadSnapshot snapshot(database);
     const int64_t generation = database.generation();
     require(generation >= last, "the generation went back");
     states += generation > last ? 1 : 0;
     last = generation;
     const auto clips = database.clips();
     std::vector<int64_t> ids;
-    for (const Clip& clip : clips) {
+    for (const db::Clip& clip : clips) {
       require(clip.captions.size() == 2, "captions are missing");
       require(database.motion(clip.id).frames == clip.frames, "another motion");
       ids.push_back(clip.id);
     }
     require(database.embedded_clips("r") == ids, "clips and vectors are of two states");
     std::vector<int64_t> worded;
-    for (const CaptionMatch& match : database.match_captions("one"))
+    for (const db::CaptionMatch& match : database.match_captions("one"))
       worded.push_back(match.clip_id);
     std::sort(worded.begin(), worded.end());
     require(worded == ids, "clips and words are of two states");
@@ -94,7 +94,7 @@ pid_t in_another_process(Work work) {
 TEST(TwoProcesses, OneWriterAndThreeReadersSeeWholeStates) {
   TestFolder folder;
   const std::string path = folder / "d";
-  { Database database(path, OpenMode::create); }
+  { db::Database database(path, db::OpenMode::create); }
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(test_seconds()));
   std::vector<pid_t> children;
@@ -108,9 +108,9 @@ TEST(TwoProcesses, OneWriterAndThreeReadersSeeWholeStates) {
     waitpid(child, &status, 0);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
   }
-  const CheckReport report = check_database(path);
+  const db::CheckReport report = db::check_database(path);
   EXPECT_TRUE(report.defects.empty());
-  const Database database(path, OpenMode::read_only);
+  const db::Database database(path, db::OpenMode::read_only);
   EXPECT_GT(database.generation(), 10);
 }
 

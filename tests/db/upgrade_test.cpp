@@ -26,8 +26,8 @@ PRAGMA user_version = 1;
 )sql";
 
 std::string schema_of(const std::string& path) {
-  const SqliteConnection connection(path, SqliteMode::read_only);
-  SqliteStatement rows(connection, "SELECT name, sql FROM sqlite_master ORDER BY name");
+  const db::SqliteConnection connection(path, db::SqliteMode::read_only);
+  db::SqliteStatement rows(connection, "SELECT name, sql FROM sqlite_master ORDER BY name");
   std::string schema;
   while (rows.step()) schema += rows.text(0) + ": " + rows.text(1) + "\n";
   return schema;
@@ -36,13 +36,13 @@ std::string schema_of(const std::string& path) {
 class UpgradeTest : public testing::Test {
  protected:
   void SetUp() override {
-    Database database(path_, OpenMode::create);
+    db::Database database(path_, db::OpenMode::create);
     const int64_t a = database.add_clip(named_clip("a"), walking_motion(40, 1));
-    Clip other = named_clip("b");
+    db::Clip other = named_clip("b");
     other.captions = {"someone jumps."};
     database.add_clip(other, walking_motion(30, 6));
     database.store_embeddings("r", {{a, {1.f}, {2.f}, {3.f}}});
-    before_ = describe_database(database);
+    before_ = tools::describe_database(database);
     speed_ = database.clip(a).speed;
     generation_ = database.generation();
     uuid_ = database.uuid();
@@ -65,9 +65,9 @@ TEST_F(UpgradeTest, AnOldFileBecomesWhatANewOneIs) {
   const std::string schema = schema_of(path_);
   downgrade(1);
   ASSERT_NE(schema_of(path_), schema);
-  const Database database(path_, OpenMode::read_write);
+  const db::Database database(path_, db::OpenMode::read_write);
   EXPECT_EQ(schema_of(path_), schema);
-  EXPECT_EQ(describe_database(database), before_);
+  EXPECT_EQ(tools::describe_database(database), before_);
   EXPECT_EQ(database.clip(*database.find_name("a")).speed, speed_);
   EXPECT_GT(speed_, 0.1);
   EXPECT_EQ(database.generation(), generation_);
@@ -80,7 +80,7 @@ TEST_F(UpgradeTest, AnOldFileBecomesWhatANewOneIs) {
 TEST_F(UpgradeTest, ReadingAnOldFileSaysHowToUpgradeAndChangesNothing) {
   downgrade(1);
   const std::string schema = schema_of(path_);
-  const std::string message = error_of([&] { Database(path_, OpenMode::read_only); });
+  const std::string message = error_of([&] { db::Database(path_, db::OpenMode::read_only); });
   EXPECT_NE(message.find("older version"), std::string::npos) << message;
   EXPECT_NE(message.find("remomask db upgrade " + path_), std::string::npos) << message;
   EXPECT_EQ(schema_of(path_), schema);
@@ -89,8 +89,8 @@ TEST_F(UpgradeTest, ReadingAnOldFileSaysHowToUpgradeAndChangesNothing) {
 TEST_F(UpgradeTest, Format2IsReadAsItIs) {
   downgrade(2);
   const std::string schema = schema_of(path_);
-  const Database database(path_, OpenMode::read_only);
-  EXPECT_EQ(describe_database(database), before_);
+  const db::Database database(path_, db::OpenMode::read_only);
+  EXPECT_EQ(tools::describe_database(database), before_);
   EXPECT_EQ(database.embedded_clips("r").size(), 1u);
   EXPECT_FALSE(database.embedding_changes("r", 0));
   EXPECT_EQ(database.writer_of(database.generation()), "");
@@ -99,7 +99,7 @@ TEST_F(UpgradeTest, Format2IsReadAsItIs) {
 
 TEST_F(UpgradeTest, TheLogOfChangesBeginsWithTheUpgrade) {
   downgrade(2);
-  Database database(path_, OpenMode::read_write);
+  db::Database database(path_, db::OpenMode::read_write);
   EXPECT_FALSE(database.embedding_changes("r", generation_ - 1));
   EXPECT_EQ(database.writer_of(generation_), "");
   ASSERT_TRUE(database.embedding_changes("r", generation_));
@@ -114,24 +114,24 @@ TEST_F(UpgradeTest, AFailingUpgradeLeavesTheOldFile) {
   downgrade(1);
   run_sql(path_, "UPDATE motion SET positions = x'00000000' WHERE clip_id = 2");
   const std::string schema = schema_of(path_);
-  const std::string message = error_of([&] { Database(path_, OpenMode::read_write); });
+  const std::string message = error_of([&] { db::Database(path_, db::OpenMode::read_write); });
   EXPECT_NE(message.find("clip number 2 is cut off"), std::string::npos) << message;
   EXPECT_EQ(schema_of(path_), schema);
-  EXPECT_NE(error_of([&] { Database(path_, OpenMode::read_only); }).find("older"),
+  EXPECT_NE(error_of([&] { db::Database(path_, db::OpenMode::read_only); }).find("older"),
             std::string::npos);
 }
 
 TEST_F(UpgradeTest, CommandReportsAndGivesPagesBack) {
   downgrade(1);
   run_sql(path_, "CREATE TABLE t (x); INSERT INTO t VALUES (zeroblob(1000000)); DROP TABLE t");
-  const UpgradeReport first = upgrade_database(path_);
+  const db::UpgradeReport first = db::upgrade_database(path_);
   EXPECT_EQ(first.version_before, 1);
   EXPECT_EQ(first.version, 3);
   EXPECT_LT(first.bytes + 900000, first.bytes_before);
-  const UpgradeReport second = upgrade_database(path_);
+  const db::UpgradeReport second = db::upgrade_database(path_);
   EXPECT_EQ(second.version_before, 3);
-  const Database database(path_, OpenMode::read_only);
-  EXPECT_EQ(describe_database(database), before_);
+  const db::Database database(path_, db::OpenMode::read_only);
+  EXPECT_EQ(tools::describe_database(database), before_);
   EXPECT_EQ(database.generation(), generation_);
 }
 

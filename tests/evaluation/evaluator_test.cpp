@@ -5,12 +5,12 @@
 
 #include <filesystem>
 
-#include "base/error.h"
 #include "evaluation/evaluator_network.h"
 #include "evaluation/evaluator_words.h"
 #include "evaluation/t2m_evaluator.h"
 #include "evaluation/word_classes.h"
 #include "nn/safetensors.h"
+#include "remomask/error.h"
 #include "tests/evaluation/evaluator_test_tools.h"
 #include "tests/retriever/retriever_test_tools.h"
 
@@ -18,54 +18,58 @@ namespace remomask {
 namespace {
 
 TEST(WordClasses, ListsInflectionsAndTheRest) {
-  EXPECT_EQ(word_class("left"), WordClass::place);
-  EXPECT_EQ(word_class("backwards"), WordClass::place);
-  EXPECT_EQ(word_class("hands"), WordClass::body);
-  EXPECT_EQ(word_class("feet"), WordClass::body);
-  EXPECT_EQ(word_class("chairs"), WordClass::object);
+  EXPECT_EQ(evaluation::word_class("left"), evaluation::WordClass::place);
+  EXPECT_EQ(evaluation::word_class("backwards"), evaluation::WordClass::place);
+  EXPECT_EQ(evaluation::word_class("hands"), evaluation::WordClass::body);
+  EXPECT_EQ(evaluation::word_class("feet"), evaluation::WordClass::body);
+  EXPECT_EQ(evaluation::word_class("chairs"), evaluation::WordClass::object);
   for (const char* word : {"walk", "walks", "walking", "walked", "running", "ran", "swinging",
                            "balancing", "raises", "raised", "sat", "stopping", "squats"}) {
-    EXPECT_EQ(word_class(word), WordClass::act) << word;
+    EXPECT_EQ(evaluation::word_class(word), evaluation::WordClass::act) << word;
   }
-  EXPECT_EQ(word_class("slowly"), WordClass::description);
-  EXPECT_EQ(word_class("the"), WordClass::determiner);
-  EXPECT_EQ(word_class("with"), WordClass::adposition);
-  EXPECT_EQ(word_class("two"), WordClass::numeral);
+  EXPECT_EQ(evaluation::word_class("slowly"), evaluation::WordClass::description);
+  EXPECT_EQ(evaluation::word_class("the"), evaluation::WordClass::determiner);
+  EXPECT_EQ(evaluation::word_class("with"), evaluation::WordClass::adposition);
+  EXPECT_EQ(evaluation::word_class("two"), evaluation::WordClass::numeral);
   for (const char* word : {"person", "proudly", "its elf", "ing", "bus"}) {
-    EXPECT_EQ(word_class(word), WordClass::other) << word;
+    EXPECT_EQ(evaluation::word_class(word), evaluation::WordClass::other) << word;
   }
-  EXPECT_EQ(static_cast<int64_t>(WordClass::other), kWordClasses - 1);
+  EXPECT_EQ(static_cast<int64_t>(evaluation::WordClass::other), evaluation::kWordClasses - 1);
 }
 
 TEST(EvaluatorWords, StartWordsEndAndPadding) {
-  const EvaluatorWords words({"sos", "eos", "unk", "a", "person", "wave"}, 4);
-  const WordBatch batch = words.encode({"A person waves wildly!", "", "a a a a a a"});
+  const evaluation::EvaluatorWords words({"sos", "eos", "unk", "a", "person", "wave"}, 4);
+  const evaluation::WordBatch batch = words.encode({"A person waves wildly!", "", "a a a a a a"});
   EXPECT_TRUE(batch.ids.equal(torch::tensor(
       {{0L, 3L, 4L, 5L, 2L, 1L}, {0L, 1L, 2L, 2L, 2L, 2L}, {0L, 3L, 3L, 3L, 3L, 1L}})));
   EXPECT_TRUE(batch.lengths.equal(torch::tensor({6L, 2L, 6L})));
-  EXPECT_EQ(batch.classes[0][1].item<int64_t>(), static_cast<int64_t>(WordClass::determiner));
-  EXPECT_EQ(batch.classes[1][3].item<int64_t>(), static_cast<int64_t>(WordClass::other));
-  EXPECT_THROW(EvaluatorWords({"a", "b", "c"}, 4), Error);
-  EXPECT_THROW(EvaluatorWords({"sos", "eos", "unk", "a", "a"}, 4), Error);
+  EXPECT_EQ(batch.classes[0][1].item<int64_t>(),
+            static_cast<int64_t>(evaluation::WordClass::determiner));
+  EXPECT_EQ(batch.classes[1][3].item<int64_t>(),
+            static_cast<int64_t>(evaluation::WordClass::other));
+  EXPECT_THROW(evaluation::EvaluatorWords({"a", "b", "c"}, 4), Error);
+  EXPECT_THROW(evaluation::EvaluatorWords({"sos", "eos", "unk", "a", "a"}, 4), Error);
 }
 
 TEST(EvaluatorWords, VocabularyOfRepeatedWords) {
-  EXPECT_EQ(evaluator_vocabulary({"A man walks.", "a man runs", "a left-handed throw", "unk unk"}),
+  EXPECT_EQ(evaluation::evaluator_vocabulary(
+                {"A man walks.", "a man runs", "a left-handed throw", "unk unk"}),
             (std::vector<std::string>{"sos", "eos", "unk", "a", "man"}));
 }
 
 TEST(Evaluator, AloneAndInABatchTheSame) {
-  const Evaluator evaluator(untrained_evaluator_stage(3));
-  std::vector<Features> motions;
+  const evaluation::Evaluator evaluator(untrained_evaluator_stage(3));
+  std::vector<motion::Features> motions;
   for (const int frames : {4, 23, 60, 192, 195, 196, 230}) {
     motions.push_back(random_features(frames, static_cast<uint64_t>(frames)));
   }
-  std::vector<const Features*> pointers;
-  for (const Features& motion : motions) pointers.push_back(&motion);
+  std::vector<const motion::Features*> pointers;
+  for (const motion::Features& motion : motions) pointers.push_back(&motion);
   const at::Tensor together = evaluator.embed_motion(pointers);
   EXPECT_EQ(together.sizes(), (std::vector<int64_t>{7, 16}));
   for (size_t i = 0; i < motions.size(); ++i) {
-    const at::Tensor alone = evaluator.embed_motion(std::vector<const Features*>{pointers[i]})[0];
+    const at::Tensor alone =
+        evaluator.embed_motion(std::vector<const motion::Features*>{pointers[i]})[0];
     EXPECT_TRUE(torch::allclose(alone, together[static_cast<int64_t>(i)], 1e-4, 1e-5)) << i;
   }
   const std::vector<std::string> captions = {"a person walks slowly", "runs",
@@ -79,13 +83,13 @@ TEST(Evaluator, AloneAndInABatchTheSame) {
 }
 
 TEST(Evaluator, ReadsEverythingButContactsUpToAMultipleOfFour) {
-  const Evaluator evaluator(untrained_evaluator_stage(3));
-  const Features motion = random_features(23, 1);
-  const auto embed = [&](const Features& features) {
-    return evaluator.embed_motion(std::vector<const Features*>{&features});
+  const evaluation::Evaluator evaluator(untrained_evaluator_stage(3));
+  const motion::Features motion = random_features(23, 1);
+  const auto embed = [&](const motion::Features& features) {
+    return evaluator.embed_motion(std::vector<const motion::Features*>{&features});
   };
   const at::Tensor before = embed(motion);
-  Features changed = motion;
+  motion::Features changed = motion;
   changed.row(5)[260] += 1;  // a contact
   for (int t = 20; t < 23; ++t) changed.row(t)[7] += 1;
   EXPECT_TRUE(embed(changed).equal(before));
@@ -94,24 +98,24 @@ TEST(Evaluator, ReadsEverythingButContactsUpToAMultipleOfFour) {
 }
 
 TEST(Evaluator, RefusesWhatDoesNotFit) {
-  const Evaluator evaluator(untrained_evaluator_stage(3));
-  const Features short_motion = random_features(3, 1), narrow(20, 251);
-  EXPECT_THROW(evaluator.embed_motion(std::vector<const Features*>{&short_motion}), Error);
-  EXPECT_THROW(evaluator.embed_motion(std::vector<const Features*>{&narrow}), Error);
-  ModelStage stage = untrained_evaluator_stage(3);
+  const evaluation::Evaluator evaluator(untrained_evaluator_stage(3));
+  const motion::Features short_motion = random_features(3, 1), narrow(20, 251);
+  EXPECT_THROW(evaluator.embed_motion(std::vector<const motion::Features*>{&short_motion}), Error);
+  EXPECT_THROW(evaluator.embed_motion(std::vector<const motion::Features*>{&narrow}), Error);
+  nn::ModelStage stage = untrained_evaluator_stage(3);
   stage.tensors.erase("motion_encoder.hidden");
-  EXPECT_THROW(Evaluator{stage}, Error);
+  EXPECT_THROW(evaluation::Evaluator{stage}, Error);
   stage = untrained_evaluator_stage(3);
   stage.kind = "retriever";
-  EXPECT_THROW(Evaluator{stage}, Error);
+  EXPECT_THROW(evaluation::Evaluator{stage}, Error);
 }
 
 TEST(Evaluator, StatisticsAverageGroupsAndWeightTheRoot) {
-  EvaluatorConfig config = tiny_evaluator_config();
+  evaluation::EvaluatorConfig config = tiny_evaluator_config();
   config.root_weight = 5;
-  EvaluatorNetwork network(config);
+  evaluation::EvaluatorNetwork network(config);
   // Column c alternates around c with amplitude 1 (columns 1 and 2: 1 and 3).
-  Features motion(8, 263);
+  motion::Features motion(8, 263);
   for (int t = 0; t < 8; ++t) {
     for (int c = 0; c < 263; ++c) {
       const float amplitude = c == 2 ? 3.f : 1.f;
@@ -130,7 +134,7 @@ TEST(Evaluator, StatisticsAverageGroupsAndWeightTheRoot) {
 }
 
 /// Names and shapes of text_mot_match/model/finest.tar, for T2M's sizes.
-TensorMap synthetic_checkpoint(int64_t words, int64_t columns) {
+nn::TensorMap synthetic_checkpoint(int64_t words, int64_t columns) {
   std::map<std::string, std::vector<int64_t>> shapes = {
       {"movement_encoder.main.0.weight", {512, columns - 4, 4}},
       {"movement_encoder.main.0.bias", {512}},
@@ -162,7 +166,7 @@ TensorMap synthetic_checkpoint(int64_t words, int64_t columns) {
   };
   add_gru("motion_encoder.", 512, 1024);
   add_gru("text_encoder.", 300, 512);
-  TensorMap tensors;
+  nn::TensorMap tensors;
   torch::manual_seed(5);
   for (const auto& [name, shape] : shapes) tensors[name] = torch::randn(shape) * 0.05;
   tensors["std"] = torch::ones({columns}, torch::kDouble);
@@ -171,48 +175,48 @@ TensorMap synthetic_checkpoint(int64_t words, int64_t columns) {
 
 TEST(T2mEvaluator, LoadsACheckpointByNamesAndShapes) {
   const std::string path = testing::TempDir() + "/finest.safetensors";
-  TensorMap tensors = synthetic_checkpoint(5, 263);
+  nn::TensorMap tensors = synthetic_checkpoint(5, 263);
   tensors["std"] = tensors["std"].to(torch::kFloat);
   const std::map<std::string, std::string> metadata = {
       {"vocabulary", R"(["sos", "eos", "unk", "walk", "person"])"}};
-  save_safetensors(path, tensors, metadata);
-  const Evaluator evaluator = load_evaluator(path);
-  EXPECT_EQ(evaluator.feature_mode(), FeatureMode::official);
+  nn::save_safetensors(path, tensors, metadata);
+  const evaluation::Evaluator evaluator = evaluation::load_evaluator(path);
+  EXPECT_EQ(evaluator.feature_mode(), motion::FeatureMode::official);
   EXPECT_EQ(evaluator.config().skeleton, "humanml3d");
 
   const at::Tensor text = evaluator.embed_text({"person walks"});
   EXPECT_EQ(text.sizes(), (std::vector<int64_t>{1, 512}));
   tensors["text_encoder.output_net.3.bias"] += 1;
-  save_safetensors(path, tensors, metadata);
-  EXPECT_TRUE(
-      torch::allclose(load_evaluator(path).embed_text({"person walks"}), text + 1, 1e-4, 1e-4));
+  nn::save_safetensors(path, tensors, metadata);
+  EXPECT_TRUE(torch::allclose(evaluation::load_evaluator(path).embed_text({"person walks"}),
+                              text + 1, 1e-4, 1e-4));
 
-  TensorMap wrong = tensors;
+  nn::TensorMap wrong = tensors;
   wrong["motion_encoder.hidden"] = torch::zeros({2, 1, 512});
-  save_safetensors(path, wrong, metadata);
-  EXPECT_THROW(load_evaluator(path), Error);
+  nn::save_safetensors(path, wrong, metadata);
+  EXPECT_THROW(evaluation::load_evaluator(path), Error);
   wrong = tensors;
   wrong.erase("word_vectors");
-  save_safetensors(path, wrong, metadata);
-  EXPECT_THROW(load_evaluator(path), FileError);
-  save_safetensors(path, tensors, {});
-  EXPECT_THROW(load_evaluator(path), FileError);
+  nn::save_safetensors(path, wrong, metadata);
+  EXPECT_THROW(evaluation::load_evaluator(path), FileError);
+  nn::save_safetensors(path, tensors, {});
+  EXPECT_THROW(evaluation::load_evaluator(path), FileError);
   std::filesystem::remove(path);
 }
 
 TEST(T2mEvaluator, KitIsToldByItsColumns) {
-  TensorFile file;
+  nn::TensorFile file;
   file.tensors = synthetic_checkpoint(3, 251);
   file.metadata["vocabulary"] = R"(["sos", "eos", "unk"])";
-  ASSERT_TRUE(is_t2m_evaluator(file));
-  const Evaluator evaluator(import_t2m_evaluator(file, "kit"));
+  ASSERT_TRUE(evaluation::is_t2m_evaluator(file));
+  const evaluation::Evaluator evaluator(evaluation::import_t2m_evaluator(file, "kit"));
   EXPECT_EQ(evaluator.config().skeleton, "kit");
 }
 
 TEST(MovementEncoder, FirstTokenByHand) {
-  MovementEncoder encoder(2, 3);
+  evaluation::MovementEncoder encoder(2, 3);
   encoder->eval();
-  const auto tensors = module_tensors(*encoder);
+  const auto tensors = nn::module_tensors(*encoder);
   torch::manual_seed(1);
   const at::Tensor motion = torch::randn({1, 8, 2});
   const auto convolve = [](const at::Tensor& input, const at::Tensor& weight,

@@ -1,4 +1,5 @@
 #include "tests/evaluation/evaluator_test_tools.h"
+#include "motion/vector.h"
 
 #include <torch/utils.h>
 
@@ -7,18 +8,19 @@
 
 namespace remomask {
 
-EvaluatorConfig tiny_evaluator_config() {
-  EvaluatorConfig config = evaluator_preset("tiny");
+evaluation::EvaluatorConfig tiny_evaluator_config() {
+  evaluation::EvaluatorConfig config = evaluation::evaluator_preset("tiny");
   std::vector<std::string> captions;
-  for (const TrainingClip& clip : separable_clips(24, 2, 1)) captions.push_back(clip.captions[0]);
-  config.vocabulary = evaluator_vocabulary(captions);
+  for (const db::TrainingClip& clip : separable_clips(24, 2, 1))
+    captions.push_back(clip.captions[0]);
+  config.vocabulary = evaluation::evaluator_vocabulary(captions);
   return config;
 }
 
-ModelStage untrained_evaluator_stage(uint64_t seed) {
+nn::ModelStage untrained_evaluator_stage(uint64_t seed) {
   torch::manual_seed(seed);
-  const EvaluatorConfig config = tiny_evaluator_config();
-  return {"evaluator", config, module_tensors(*EvaluatorNetwork(config))};
+  const evaluation::EvaluatorConfig config = tiny_evaluator_config();
+  return {"evaluator", config, nn::module_tensors(*evaluation::EvaluatorNetwork(config))};
 }
 
 Motion standing_body(int frames) {
@@ -28,11 +30,11 @@ Motion standing_body(int frames) {
   std::vector<Vec3> joints(static_cast<size_t>(skeleton.joints()), Vec3(0, hip_height, 0));
   for (size_t joint = 1; joint < joints.size(); ++joint) {
     joints[joint] = joints[static_cast<size_t>(skeleton.parents[joint])] +
-                    skeleton.bone_lengths[joint] * skeleton.rest_directions[joint];
+                    skeleton.bone_lengths[joint] * rest_direction(skeleton, joint);
   }
   for (int frame = 0; frame < frames; ++frame) {
     for (int joint = 0; joint < motion.joints; ++joint) {
-      motion.set(frame, joint, joints[static_cast<size_t>(joint)]);
+      set_joint_position(motion, frame, joint, joints[static_cast<size_t>(joint)]);
     }
   }
   return motion;

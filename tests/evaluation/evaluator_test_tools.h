@@ -8,10 +8,10 @@
 namespace remomask {
 
 /// Preset tiny over the words of separable_clips().
-EvaluatorConfig tiny_evaluator_config();
+evaluation::EvaluatorConfig tiny_evaluator_config();
 
 /// Stage of an evaluator with random weights.
-ModelStage untrained_evaluator_stage(uint64_t seed);
+nn::ModelStage untrained_evaluator_stage(uint64_t seed);
 
 /// The uniform body stands with straight legs; its left toe and ankle are on
 /// the floor, the right ones 10.2 mm above (the right leg is shorter).

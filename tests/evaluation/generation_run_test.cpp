@@ -37,7 +37,7 @@ std::vector<float> vector_of(const Motion& motion) {
   return vector;
 }
 
-Motion generate_right(const LabelPrompt& prompt) {
+Motion generate_right(const evaluation::LabelPrompt& prompt) {
   const auto found = std::find(kContents.begin(), kContents.end(), prompt.content);
   return motion_of(static_cast<size_t>(found - kContents.begin()));
 }
@@ -48,10 +48,10 @@ class GenerationProtocol : public ::testing::Test {
   GenerationProtocol() : evaluator_(untrained_evaluator_stage(1)) {}
 
   void SetUp() override {
-    database_.emplace(folder_ / "motions.sqlite", OpenMode::create);
-    std::vector<ClipEmbedding> embeddings;
+    database_.emplace(folder_ / "motions.sqlite", db::OpenMode::create);
+    std::vector<db::ClipEmbedding> embeddings;
     const auto add = [&](size_t content, const std::string& split, const std::string& group) {
-      Clip clip = named_clip("clip" + std::to_string(embeddings.size()));
+      db::Clip clip = named_clip("clip" + std::to_string(embeddings.size()));
       clip.labels = {{"content", kContents[content]}};
       clip.captions = {"a person shows " + kContents[content],
                        "a person lifts the left hand to " + kContents[content]};
@@ -60,7 +60,7 @@ class GenerationProtocol : public ::testing::Test {
       if (split == "test" && content == 1) clip.labels["unseen"] = "take";
       Motion motion = motion_of(content);
       motion.at(1, 0)[0] = 1e-4f * static_cast<float>(embeddings.size());
-      ClipEmbedding embedding;
+      db::ClipEmbedding embedding;
       embedding.clip_id = database_->add_clip(clip, motion);
       embedding.motion = vector_of(motion);
       embedding.text = embedding.motion;
@@ -74,8 +74,8 @@ class GenerationProtocol : public ::testing::Test {
       add(content, "test", "group" + kContents[content] + std::to_string(content));
     }
     database_->store_embeddings("retriever", embeddings);
-    index_.emplace(VectorIndex::build(*database_, "retriever"));
-    judge_ = retriever_judge(*index_, vector_of);
+    index_.emplace(index::VectorIndex::build(*database_, "retriever"));
+    judge_ = evaluation::retriever_judge(*index_, vector_of);
     options_.prompts = 6;
     options_.modality_prompts = 0;
     options_.gallery_splits = {"train"};
@@ -83,30 +83,31 @@ class GenerationProtocol : public ::testing::Test {
     options_.results_path = folder_ / "results.jsonl";
   }
 
-  GenerationReport run(const GenerateMotion& generate, const Monitor& monitor = {}) {
-    const JudgeGallery gallery(*database_, *judge_, options_.gallery_splits);
-    const GenerationRun done =
-        run_generation(*database_, gallery, *judge_, evaluator_, generate, options_, monitor);
+  evaluation::GenerationReport run(const evaluation::GenerateMotion& generate,
+                                   const Monitor& monitor = {}) {
+    const evaluation::JudgeGallery gallery(*database_, *judge_, options_.gallery_splits);
+    const evaluation::GenerationRun done = evaluation::run_generation(
+        *database_, gallery, *judge_, evaluator_, generate, options_, monitor);
     jobs_ = done.jobs;
-    GenerationReportOptions report;
+    evaluation::GenerationReportOptions report;
     report.batch = 2;
     report.draws = 2;
     report.modality_picks = 2;
-    return report_generation(done, *database_, gallery, evaluator_, report);
+    return evaluation::report_generation(done, *database_, gallery, evaluator_, report);
   }
 
   TestFolder folder_;
-  Evaluator evaluator_;
-  std::optional<Database> database_;
-  std::optional<VectorIndex> index_;
-  std::unique_ptr<MotionJudge> judge_;
-  GenerationRunOptions options_;
-  std::vector<GenerationJob> jobs_;
+  evaluation::Evaluator evaluator_;
+  std::optional<db::Database> database_;
+  std::optional<index::VectorIndex> index_;
+  std::unique_ptr<evaluation::MotionJudge> judge_;
+  evaluation::GenerationRunOptions options_;
+  std::vector<evaluation::GenerationJob> jobs_;
 };
 
 TEST_F(GenerationProtocol, ARightGeneratorHasAccuracyOne) {
   const auto report = run(generate_right);
-  const GenerationSubset& all = report.subsets.at(0);
+  const evaluation::GenerationSubset& all = report.subsets.at(0);
   EXPECT_EQ(all.name, "all");
   EXPECT_EQ(all.prompts, 6);
   EXPECT_EQ(all.generated.content.accuracy, 1);
@@ -125,8 +126,8 @@ TEST_F(GenerationProtocol, ARightGeneratorHasAccuracyOne) {
 }
 
 TEST_F(GenerationProtocol, CountsWhatAGeneratorShowsInstead) {
-  const auto report = run([](const LabelPrompt&) { return motion_of(0); });
-  const GenerationSubset& all = report.subsets.at(0);
+  const auto report = run([](const evaluation::LabelPrompt&) { return motion_of(0); });
+  const evaluation::GenerationSubset& all = report.subsets.at(0);
   EXPECT_NEAR(all.generated.content.accuracy, 1. / 3, 1e-12);
   EXPECT_NEAR(all.generated.content.standard_error, std::sqrt(1. / 3 * 2 / 3 / 6), 1e-12);
   EXPECT_EQ(report.contents.at("jump").right, 2);
@@ -148,25 +149,25 @@ TEST_F(GenerationProtocol, SubsetsByUnseenAndRarity) {
 }
 
 TEST_F(GenerationProtocol, CountsSides) {
-  const auto lift = [](const LabelPrompt& prompt) {
+  const auto lift = [](const evaluation::LabelPrompt& prompt) {
     Motion motion = generate_right(prompt);
     const int wrist = prompt.content == "walk" ? kRightWrist : kLeftWrist;
     for (int frame = 2; frame < motion.frames; ++frame) motion.at(frame, wrist)[2] += 0.2f;
     return motion;
   };
-  const SideCounts sides = run(lift).subsets.at(0).generated.sides;
+  const evaluation::SideCounts sides = run(lift).subsets.at(0).generated.sides;
   EXPECT_EQ(sides.hands.asked, 3);  // every second caption asks for the left hand
   EXPECT_EQ(sides.hands.right, 2);
   EXPECT_EQ(sides.turns.asked, 0);
 }
 
 TEST_F(GenerationProtocol, BrokenMotionsAreWrong) {
-  const auto report = run([](const LabelPrompt& prompt) {
+  const auto report = run([](const evaluation::LabelPrompt& prompt) {
     Motion motion = generate_right(prompt);
     if (prompt.content == "run") motion.at(2, 2)[0] = std::numeric_limits<float>::infinity();
     return motion;
   });
-  const MotionFigures& figures = report.subsets.at(0).generated;
+  const evaluation::MotionFigures& figures = report.subsets.at(0).generated;
   EXPECT_NEAR(figures.content.accuracy, 2. / 3, 1e-12);
   EXPECT_EQ(figures.physical.not_finite, 2);
   EXPECT_EQ(figures.captions.motions, 4);
@@ -175,8 +176,8 @@ TEST_F(GenerationProtocol, BrokenMotionsAreWrong) {
 }
 
 TEST_F(GenerationProtocol, CanLeaveTheOwnGroupOut) {
-  const JudgeGallery gallery(*database_, *judge_, {"train"});
-  LabelPrompt prompt;
+  const evaluation::JudgeGallery gallery(*database_, *judge_, {"train"});
+  evaluation::LabelPrompt prompt;
   prompt.group = "groupjump0";
   prompt.content = "jump";
   EXPECT_EQ(gallery.judge(prompt, motion_of(0), evaluator_, false).nearest_clip, "clip0");
@@ -188,7 +189,7 @@ TEST_F(GenerationProtocol, RepeatsAndModalityHaveSeedsOfTheirOwn) {
   options_.modality_prompts = 3;
   options_.modality_repeats = 4;
   std::set<uint64_t> seeds;
-  const auto report = run([&](const LabelPrompt& prompt) {
+  const auto report = run([&](const evaluation::LabelPrompt& prompt) {
     seeds.insert(prompt.seed);
     return generate_right(prompt);
   });
@@ -209,7 +210,7 @@ TEST_F(GenerationProtocol, GoesOnWhereItWasStopped) {
   std::stop_source stop;
   Monitor monitor;
   monitor.stop = stop.get_token();
-  const auto count = [&](const LabelPrompt& prompt) {
+  const auto count = [&](const evaluation::LabelPrompt& prompt) {
     if (++generated == 4) stop.request_stop();
     return generate_right(prompt);
   };
@@ -245,15 +246,16 @@ TEST_F(GenerationProtocol, RefusesResultsOfAnotherProtocol) {
 }
 
 TEST_F(GenerationProtocol, RefusesVectorsOfAnotherWidth) {
-  judge_ = retriever_judge(*index_, [](const Motion&) { return std::vector<float>{1.f}; });
+  judge_ =
+      evaluation::retriever_judge(*index_, [](const Motion&) { return std::vector<float>{1.f}; });
   EXPECT_NE(error_of([&] { run(generate_right); }).find("1 numbers"), std::string::npos);
 }
 
 TEST_F(GenerationProtocol, TheEvaluatorJudgesInItsOwnSpace) {
   // Stored clips are canonical.
-  const Motion canonical = canonicalize(standing_body(8), humanml_skeleton());
+  const Motion canonical = motion::canonicalize(standing_body(8), humanml_skeleton());
   const int64_t asked = database_->add_clip(named_clip("standing"), canonical);
-  const auto judge = evaluator_judge(evaluator_, *database_);
+  const auto judge = evaluation::evaluator_judge(evaluator_, *database_);
   ASSERT_EQ(judge->clip_ids().size(), 13u);
   const auto vector = judge->embed(database_->motion(asked));
   const auto near = judge->nearest(vector, judge->clip_ids());

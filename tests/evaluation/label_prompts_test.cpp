@@ -5,17 +5,17 @@
 #include <map>
 #include <set>
 
-#include "base/error.h"
+#include "remomask/error.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
 namespace {
 
 /// Ten clips "walk", two "run", one "jump" in test; others that do not count.
-std::vector<Clip> clips_of_three_contents() {
-  std::vector<Clip> clips;
+std::vector<db::Clip> clips_of_three_contents() {
+  std::vector<db::Clip> clips;
   const auto add = [&](const std::string& content, const std::string& split) {
-    Clip clip = named_clip("clip" + std::to_string(clips.size()));
+    db::Clip clip = named_clip("clip" + std::to_string(clips.size()));
     clip.id = static_cast<int64_t>(clips.size()) + 1;
     clip.split = split;
     clip.frames = 60;
@@ -37,12 +37,12 @@ std::vector<Clip> clips_of_three_contents() {
 }
 
 TEST(LabelPrompts, GoThroughTheContentsInTurn) {
-  const auto prompts = choose_label_prompts(clips_of_three_contents(), "test", 12, 5);
+  const auto prompts = evaluation::choose_label_prompts(clips_of_three_contents(), "test", 12, 5);
   ASSERT_EQ(prompts.size(), 12u);
   std::map<std::string, int> counts;
   std::set<std::string> walks;
   std::set<uint64_t> seeds;
-  for (const LabelPrompt& prompt : prompts) {
+  for (const evaluation::LabelPrompt& prompt : prompts) {
     ++counts[prompt.content];
     seeds.insert(prompt.seed);
     EXPECT_EQ(prompt.text.substr(0, prompt.content.size()), prompt.content);
@@ -61,23 +61,26 @@ TEST(LabelPrompts, AUniformDrawTakesEveryClipAlike) {
   const auto clips = clips_of_three_contents();
   int walks = 0;
   for (uint64_t seed = 0; seed < 100; ++seed) {
-    const auto prompts = choose_label_prompts(clips, "test", 1, seed, PromptDraw::uniform);
+    const auto prompts =
+        evaluation::choose_label_prompts(clips, "test", 1, seed, evaluation::PromptDraw::uniform);
     walks += prompts.at(0).content == "walk";
   }
   // 10 of 13 clips walk; the standard error of 100 draws is 4.2.
   EXPECT_NEAR(walks, 77, 17);
-  const auto all = choose_label_prompts(clips, "test", 13, 1, PromptDraw::uniform);
+  const auto all =
+      evaluation::choose_label_prompts(clips, "test", 13, 1, evaluation::PromptDraw::uniform);
   std::set<std::string> names;
-  for (const LabelPrompt& prompt : all) names.insert(prompt.clip);
+  for (const evaluation::LabelPrompt& prompt : all) names.insert(prompt.clip);
   EXPECT_EQ(names.size(), 13u);
-  EXPECT_THROW(parse_prompt_draw("uneven"), Error);
+  EXPECT_THROW(evaluation::parse_prompt_draw("uneven"), Error);
 }
 
 TEST(LabelPrompts, AreAFunctionOfTheSeed) {
   const auto clips = clips_of_three_contents();
   const auto texts = [&](uint64_t seed) {
     std::string all;
-    for (const LabelPrompt& prompt : choose_label_prompts(clips, "test", 9, seed)) {
+    for (const evaluation::LabelPrompt& prompt :
+         evaluation::choose_label_prompts(clips, "test", 9, seed)) {
       all += prompt.clip + prompt.text + std::to_string(prompt.seed) + "\n";
     }
     return all;
@@ -89,11 +92,11 @@ TEST(LabelPrompts, AreAFunctionOfTheSeed) {
 TEST(LabelPrompts, ZeroMeansEveryClipOnce) {
   auto clips = clips_of_three_contents();
   clips[3].labels["unseen"] = "pair";
-  const auto prompts = choose_label_prompts(clips, "test", 0, 5);
+  const auto prompts = evaluation::choose_label_prompts(clips, "test", 0, 5);
   ASSERT_EQ(prompts.size(), 13u);
   std::set<std::string> names;
   std::set<uint64_t> seeds;
-  for (const LabelPrompt& prompt : prompts) {
+  for (const evaluation::LabelPrompt& prompt : prompts) {
     names.insert(prompt.clip);
     seeds.insert(prompt.seed);
     EXPECT_EQ(prompt.unseen, prompt.clip == clips[3].name ? "pair" : "");
@@ -103,9 +106,10 @@ TEST(LabelPrompts, ZeroMeansEveryClipOnce) {
 }
 
 TEST(LabelPrompts, RefuseASplitWithoutContents) {
-  EXPECT_NE(
-      error_of([] { choose_label_prompts(clips_of_three_contents(), "val", 3, 1); }).find("'val'"),
-      std::string::npos);
+  EXPECT_NE(error_of([] {
+              evaluation::choose_label_prompts(clips_of_three_contents(), "val", 3, 1);
+            }).find("'val'"),
+            std::string::npos);
 }
 
 }  // namespace

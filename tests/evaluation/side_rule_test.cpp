@@ -1,4 +1,5 @@
 #include "evaluation/side_rule.h"
+#include "motion/vector.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +12,10 @@ namespace remomask {
 namespace {
 
 std::string asked_text(const std::string& caption) {
-  const auto asked = asked_side(caption);
+  const auto asked = evaluation::asked_side(caption);
   if (!asked) return "nothing";
-  return std::string(asked->kind == SideKind::hand ? "hand " : "turn ") + side_name(asked->side);
+  return std::string(asked->kind == evaluation::SideKind::hand ? "hand " : "turn ") +
+         evaluation::side_name(asked->side);
 }
 
 TEST(AskedSide, OfCaptions) {
@@ -40,44 +42,45 @@ Motion turning_body(double degrees) {
     const double angle = degrees * std::numbers::pi / 180 * frame / (motion.frames - 1);
     const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));
     for (int joint = 0; joint < motion.joints; ++joint) {
-      motion.set(frame, joint, turn * motion.position(frame, joint));
+      set_joint_position(motion, frame, joint, turn * joint_position(motion, frame, joint));
     }
   }
   return motion;
 }
 
-std::string shown_text(const Motion& motion, SideKind kind) {
-  const auto shown = shown_side(motion, humanml_skeleton(), kind);
-  return shown ? side_name(*shown) : "none";
+std::string shown_text(const Motion& motion, evaluation::SideKind kind) {
+  const auto shown = evaluation::shown_side(motion, humanml_skeleton(), kind);
+  return shown ? evaluation::side_name(*shown) : "none";
 }
 
 TEST(ShownSide, OfTurns) {
-  EXPECT_EQ(shown_text(turning_body(90), SideKind::turn), "left");
-  EXPECT_EQ(shown_text(turning_body(-90), SideKind::turn), "right");
-  EXPECT_EQ(shown_text(turning_body(350), SideKind::turn), "left");  // not a turn by -10
-  EXPECT_EQ(shown_text(turning_body(-720), SideKind::turn), "right");
-  EXPECT_EQ(shown_text(turning_body(10), SideKind::turn), "none");
+  EXPECT_EQ(shown_text(turning_body(90), evaluation::SideKind::turn), "left");
+  EXPECT_EQ(shown_text(turning_body(-90), evaluation::SideKind::turn), "right");
+  EXPECT_EQ(shown_text(turning_body(350), evaluation::SideKind::turn),
+            "left");  // not a turn by -10
+  EXPECT_EQ(shown_text(turning_body(-720), evaluation::SideKind::turn), "right");
+  EXPECT_EQ(shown_text(turning_body(10), evaluation::SideKind::turn), "none");
 }
 
 TEST(ShownSide, OfHands) {
   // The wrists go with the body: neither moves relative to its shoulder by itself.
-  EXPECT_EQ(shown_text(standing_body(10), SideKind::hand), "none");
-  EXPECT_EQ(shown_text(turning_body(90), SideKind::hand), "none");
+  EXPECT_EQ(shown_text(standing_body(10), evaluation::SideKind::hand), "none");
+  EXPECT_EQ(shown_text(turning_body(90), evaluation::SideKind::hand), "none");
   Motion motion = turning_body(90);
   for (int frame = 0; frame < motion.frames; ++frame) {
     motion.at(frame, 21)[1] += 0.1f * static_cast<float>(frame % 2);
   }
-  EXPECT_EQ(shown_text(motion, SideKind::hand), "right");
+  EXPECT_EQ(shown_text(motion, evaluation::SideKind::hand), "right");
   for (int frame = 0; frame < motion.frames; ++frame) {
     motion.at(frame, 20)[1] += 0.2f * static_cast<float>(frame % 2);
   }
-  EXPECT_EQ(shown_text(motion, SideKind::hand), "left");
-  EXPECT_EQ(shown_side_name("the right hand", motion, humanml_skeleton()), "left");
-  EXPECT_EQ(shown_side_name("walks", motion, humanml_skeleton()), "");
+  EXPECT_EQ(shown_text(motion, evaluation::SideKind::hand), "left");
+  EXPECT_EQ(evaluation::shown_side_name("the right hand", motion, humanml_skeleton()), "left");
+  EXPECT_EQ(evaluation::shown_side_name("walks", motion, humanml_skeleton()), "");
 }
 
 TEST(SideCounts, CountWhatIsAsked) {
-  SideCounts counts;
+  evaluation::SideCounts counts;
   count_side("waves the left hand", "left", counts);
   count_side("waves the left hand", "right", counts);
   count_side("turns right", "", counts);

@@ -9,7 +9,9 @@ namespace {
 struct AttentionInputs {
   std::vector<at::Tensor> all;  // q, k, v, position, key
 
-  at::Tensor attend() const { return biased_attention(all[0], all[1], all[2], all[3], all[4]); }
+  at::Tensor attend() const {
+    return generator::biased_attention(all[0], all[1], all[2], all[3], all[4]);
+  }
 };
 
 AttentionInputs random_attention_inputs(int64_t batch, int64_t count, int64_t extra, int64_t heads,

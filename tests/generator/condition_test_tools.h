@@ -10,10 +10,10 @@ namespace remomask {
 
 /// Random condition of B samples with S text tokens and k hits, all present,
 /// which are vectors only.
-inline Condition random_condition(int64_t batch, int64_t text_tokens, int64_t hits,
-                                  int64_t text_width, int64_t embedding_width) {
+inline generator::Condition random_condition(int64_t batch, int64_t text_tokens, int64_t hits,
+                                             int64_t text_width, int64_t embedding_width) {
   const auto unit = [](const at::Tensor& x) { return x / x.norm(2, -1, true).clamp_min(1e-9); };
-  Condition condition;
+  generator::Condition condition;
   condition.text_states = torch::randn({batch, text_tokens, text_width});
   condition.text_mask = torch::ones({batch, text_tokens}, torch::kBool);
   condition.text_query = unit(torch::randn({batch, embedding_width}));
@@ -28,14 +28,14 @@ inline Condition random_condition(int64_t batch, int64_t text_tokens, int64_t hi
 }
 
 /// The same with token maps [frames, rows] of random codes for the best `hits`.
-inline Condition with_hit_tokens(Condition condition, int64_t hits, int64_t frames, int64_t rows,
-                                 int64_t codes) {
+inline generator::Condition with_hit_tokens(generator::Condition condition, int64_t hits,
+                                            int64_t frames, int64_t rows, int64_t codes) {
   condition.hit_tokens =
       torch::randint(codes, {condition.text_mask.size(0), hits, frames, rows}, torch::kLong);
   return condition;
 }
 
-inline Condition to_double(Condition condition) {
+inline generator::Condition to_double(generator::Condition condition) {
   for (at::Tensor* field : {&condition.text_states, &condition.text_query, &condition.hit_motion,
                             &condition.hit_text, &condition.hit_similarity}) {
     *field = field->to(torch::kDouble);
@@ -43,8 +43,8 @@ inline Condition to_double(Condition condition) {
   return condition;
 }
 
-inline MaskedConfig small_masked_config() {
-  MaskedConfig config;
+inline generator::MaskedConfig small_masked_config() {
+  generator::MaskedConfig config;
   config.preset = "test";
   config.rows = 3;
   config.codes = 16;
@@ -60,8 +60,8 @@ inline MaskedConfig small_masked_config() {
   return config;
 }
 
-inline ResidualConfig small_residual_config() {
-  ResidualConfig config;
+inline generator::ResidualConfig small_residual_config() {
+  generator::ResidualConfig config;
   config.preset = "test";
   config.rows = 3;
   config.levels = 4;

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
-#include "condition_test_tools.h"
+#include "remomask/error.h"
+#include "tests/generator/condition_test_tools.h"
 
 namespace remomask {
 namespace {
 
-ResidualTransformer stirred_residual_model() {
+generator::ResidualTransformer stirred_residual_model() {
   torch::manual_seed(21);
-  ResidualTransformer model(small_residual_config());
+  generator::ResidualTransformer model(small_residual_config());
   randomise_parameters(*model, 0.2);
   model->eval();
   return model;
@@ -45,13 +45,13 @@ TEST(ResidualTransformer, LevelsInOneBatchDoNotMix) {
   auto model = stirred_residual_model();
   const auto tokens = torch::randint(16, {5, 6, 3, 4}, torch::kLong);
   const auto levels = torch::tensor({3, 1, 2, 1, 3}, torch::kLong);
-  const Condition condition = random_condition(5, 4, 0, 12, 8);
+  const generator::Condition condition = random_condition(5, 4, 0, 12, 8);
   auto frame_mask = torch::ones({5, 6}, torch::kBool);
   frame_mask[1].slice(0, 4, 6).fill_(false);
   const auto together = model->forward(tokens, levels, model->prepare(condition), frame_mask);
   for (int64_t i = 0; i < 5; ++i) {
     const int64_t length = i == 1 ? 4 : 6;
-    const auto one = select_condition(condition, torch::tensor({i}));
+    const auto one = generator::select_condition(condition, torch::tensor({i}));
     const auto alone = model->forward(tokens[i].slice(0, 0, length).unsqueeze(0),
                                       levels.slice(0, i, i + 1), model->prepare(one));
     EXPECT_LT((alone[0] - together[i].slice(0, 0, length * 3)).abs().max().item<float>(), 1e-4f);
@@ -75,7 +75,7 @@ TEST(ResidualTransformer, TokensOfTheLevelAndAboveAreNotRead) {
 
 TEST(ResidualTransformer, TokensStayDistinctAtInitialisation) {
   torch::manual_seed(22);
-  ResidualTransformer model((ResidualConfig()));
+  generator::ResidualTransformer model((generator::ResidualConfig()));
   model->eval();
   std::vector<at::Tensor> stream;
   model->forward(torch::randint(256, {2, 8, 6, 6}, torch::kLong),
@@ -86,15 +86,15 @@ TEST(ResidualTransformer, TokensStayDistinctAtInitialisation) {
 
 TEST(ResidualTransformer, SaveAndLoadAreExact) {
   auto model = stirred_residual_model();
-  auto loaded = load_residual(residual_stage(model));
+  auto loaded = generator::load_residual(generator::residual_stage(model));
   const auto tokens = torch::randint(16, {2, 4, 3, 4}, torch::kLong);
   const auto level = torch::tensor({1, 3}, torch::kLong);
-  const Condition condition = random_condition(2, 4, 0, 12, 8);
+  const generator::Condition condition = random_condition(2, 4, 0, 12, 8);
   EXPECT_TRUE(torch::equal(model->forward(tokens, level, model->prepare(condition)),
                            loaded->forward(tokens, level, loaded->prepare(condition))));
-  ModelStage stage = residual_stage(model);
+  nn::ModelStage stage = generator::residual_stage(model);
   stage.tensors.erase("tables");
-  EXPECT_THROW(load_residual(stage), Error);
+  EXPECT_THROW(generator::load_residual(stage), Error);
 }
 
 }  // namespace

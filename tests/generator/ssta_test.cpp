@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "condition_test_tools.h"
 #include "generator/biased_attention.h"
+#include "tests/generator/condition_test_tools.h"
 
 namespace remomask {
 namespace {
@@ -53,8 +53,8 @@ Matrix attend_by_loops(const Matrix& q, const Matrix& k, const Matrix& v, const 
   return out;
 }
 
-SstaConfig two_token_config() {
-  SstaConfig config;
+generator::SstaConfig two_token_config() {
+  generator::SstaConfig config;
   config.rows = 1;
   config.width = 4;
   config.heads = 2;
@@ -66,7 +66,7 @@ SstaConfig two_token_config() {
 }
 
 TEST(Ssta, EqualsLoopsForTwoTokensOneTextOneHit) {
-  Ssta ssta(two_token_config());
+  generator::Ssta ssta(two_token_config());
   ssta->to(torch::kDouble);
   auto parameters = ssta->named_parameters();
   {
@@ -92,7 +92,7 @@ TEST(Ssta, EqualsLoopsForTwoTokensOneTextOneHit) {
   const auto z = torch::tensor({0.5, -1.0, 0.25, 2.0, 1.0, 0.0, -0.5, 0.75}, torch::kDouble)
                      .reshape({1, 2, 4});
   const auto text = torch::tensor({0.3, 0.6, -0.9, 0.2}, torch::kDouble);
-  ConditionRows rows;
+  generator::ConditionRows rows;
   rows.text = text.reshape({1, 1, 4});
   rows.hit_keys = torch::tensor({0.4, -0.2, 0.7, 0.1, 0.9}, torch::kDouble).reshape({1, 1, 5});
   rows.hit_values = torch::tensor({0.4, -0.2}, torch::kDouble).reshape({1, 1, 2});
@@ -105,31 +105,32 @@ TEST(Ssta, EqualsLoopsForTwoTokensOneTextOneHit) {
   const Matrix bias = {{-0.25, 0.75, 0.1, -0.3}, {0.5, -0.25, 0.1, -0.3}};
   const Matrix expected = attend_by_loops(tokens, keys, values, bias, 2);
 
-  const auto out = ssta->forward(z, ssta->prepare(rows), relative_position_index(2, 1), {});
+  const auto out =
+      ssta->forward(z, ssta->prepare(rows), generator::relative_position_index(2, 1), {});
   for (int i = 0; i < 2; ++i) {
     for (int c = 0; c < 4; ++c) EXPECT_NEAR(out[0][i][c].item<double>(), expected[i][c], 1e-12);
   }
 }
 
 TEST(Ssta, RelativeIndexCountsDistanceAndRows) {
-  const auto index = relative_position_index(3, 2).reshape({6, 6});
+  const auto index = generator::relative_position_index(3, 2).reshape({6, 6});
   // Token 1 = (t 0, row 1), token 4 = (t 2, row 0): dt = 2.
   EXPECT_EQ(index[1][4].item<int64_t>(), ((2 + 48) * 2 + 1) * 2 + 0);
   EXPECT_EQ(index[4][1].item<int64_t>(), ((-2 + 48) * 2 + 0) * 2 + 1);
   EXPECT_EQ(index[3][3].item<int64_t>(), (48 * 2 + 1) * 2 + 1);
-  const auto longer = relative_position_index(60, 1).reshape({60, 60});
+  const auto longer = generator::relative_position_index(60, 1).reshape({60, 60});
   EXPECT_EQ(longer[0][59].item<int64_t>(), 96);
   EXPECT_EQ(longer[59][0].item<int64_t>(), 0);
 }
 
 TEST(Ssta, AnalyticGradientEqualsDifferences) {
   torch::manual_seed(5);
-  SstaConfig config = two_token_config();
+  generator::SstaConfig config = two_token_config();
   config.rows = 2;
-  Ssta ssta(config);
+  generator::Ssta ssta(config);
   ssta->to(torch::kDouble);
   randomise_parameters(*ssta, 0.7);
-  ConditionRows rows;
+  generator::ConditionRows rows;
   rows.text = torch::randn({2, 2, 4}, torch::kDouble);
   rows.hit_keys = torch::randn({2, 2, 5}, torch::kDouble);
   rows.hit_values = torch::randn({2, 2, 2}, torch::kDouble);
@@ -138,7 +139,7 @@ TEST(Ssta, AnalyticGradientEqualsDifferences) {
   auto z = torch::randn({2, 4, 4}, torch::kDouble);
   const auto token_mask = torch::tensor({1, 1, 1, 1, 1, 1, 0, 0}, torch::kBool).reshape({2, 4});
   const auto weight = torch::randn({2, 4, 4}, torch::kDouble);
-  const auto index = relative_position_index(2, 2);
+  const auto index = generator::relative_position_index(2, 2);
   const auto objective = [&] {
     return (ssta->forward(z, ssta->prepare(rows), index, token_mask) * weight).sum();
   };
@@ -172,26 +173,26 @@ TEST(Ssta, AnalyticGradientEqualsDifferences) {
 
 TEST(Ssta, RetrievalStartsWithoutInfluenceThroughValues) {
   torch::manual_seed(6);
-  SstaConfig config = two_token_config();
-  SstaStack stack(config, 2);
+  generator::SstaConfig config = two_token_config();
+  generator::SstaStack stack(config, 2);
   stack->initialise();
   for (auto& item : stack->named_parameters()) {
     if (item.key().find("hit_value.") != std::string::npos) {
       EXPECT_EQ(item.value().abs().max().item<float>(), 0) << item.key();
     }
   }
-  SstaConfig text_only = config;
+  generator::SstaConfig text_only = config;
   text_only.retrieval = false;
-  for (auto& item : SstaStack(text_only, 2)->named_parameters()) {
+  for (auto& item : generator::SstaStack(text_only, 2)->named_parameters()) {
     EXPECT_EQ(item.key().find("hit_"), std::string::npos) << item.key();
   }
 }
 
 TEST(Ssta, TokensStayDistinctAtInitialisation) {
   torch::manual_seed(7);
-  MaskedConfig config;
+  generator::MaskedConfig config;
   config.layers = 6;
-  MaskedTransformer model(config);
+  generator::MaskedTransformer model(config);
   model->eval();
   const auto tokens = torch::randint(config.codes, {2, 12, 6}, torch::kLong);
   std::vector<at::Tensor> stream;
@@ -203,9 +204,9 @@ TEST(Ssta, TokensStayDistinctAtInitialisation) {
 }
 
 TEST(Ssta, WidthMustFitTheHeads) {
-  SstaConfig config = two_token_config();
+  generator::SstaConfig config = two_token_config();
   config.heads = 3;
-  EXPECT_ANY_THROW(SstaStack(config, 1));
+  EXPECT_ANY_THROW(generator::SstaStack(config, 1));
 }
 
 }  // namespace

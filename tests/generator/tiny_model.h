@@ -4,17 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "generator/generator_data.h"
-#include "generator/presets.h"
-#include "generator/tokenizer_training.h"
-#include "generator/transformer_training.h"
-#include "retriever/training.h"
-#include "tests/generator/tokenizer_test_tools.h"
+#include "tests/tokenizer/tokenizer_test_tools.h"
+#include "training/generator_data.h"
+#include "training/presets.h"
+#include "training/retriever_training.h"
+#include "training/tokenizer_training.h"
+#include "training/transformer_training.h"
 
 namespace remomask {
 
-inline std::vector<TrainingClip> captioned_clips() {
-  std::vector<TrainingClip> clips = swinging_clips({40, 48, 60, 44, 52, 72, 41, 64});
+inline std::vector<db::TrainingClip> captioned_clips() {
+  std::vector<db::TrainingClip> clips = swinging_clips({40, 48, 60, 44, 52, 72, 41, 64});
   const std::vector<std::string> texts = {"a person walks", "someone runs in a circle",
                                           "a man waves", "a person jumps and turns"};
   for (size_t i = 0; i < clips.size(); ++i) {
@@ -27,36 +27,38 @@ inline std::vector<TrainingClip> captioned_clips() {
 
 /// All four networks of preset tiny after two steps each, made once.
 struct TinyModel {
-  std::map<std::string, ModelStage> stages;
-  GeneratorData data;
+  std::map<std::string, nn::ModelStage> stages;
+  training::GeneratorData data;
 
   TinyModel() {
-    const auto clips = captioned_clips();
-    const ModelConfig config = model_preset("tiny");
+    const auto clips = training::captioned_clips();
+    const training::ModelConfig config = training::model_preset("tiny");
     const auto trainer = [](const std::string& name) {
-      TrainerOptions options;
+      training::TrainerOptions options;
       options.steps = 2;
       options.stage_name = name;
       return options;
     };
-    RetrieverTrainingOptions retriever_options("tiny");
+    training::RetrieverTrainingOptions retriever_options("tiny");
     retriever_options.trainer = trainer("retriever");
     retriever_options.batch = 4;
     stages["retriever"] =
-        train_retriever(clips, {}, std::nullopt, config.retriever, retriever_options, {});
-    TokenizerTrainingOptions tokenizer_options;
+        training::train_retriever(clips, {}, std::nullopt, config.retriever, retriever_options, {});
+    training::TokenizerTrainingOptions tokenizer_options;
     tokenizer_options.trainer = trainer("tokenizer");
     tokenizer_options.window = 32;
     tokenizer_options.batch_frames = 256;
-    stages["tokenizer"] = train_tokenizer(clips, clips, config.tokenizer, tokenizer_options, {});
-    data = prepare_generator_data(clips, {clips[0]}, Tokenizer(stages["tokenizer"]),
-                                  Retriever(stages["retriever"]), {});
-    TransformerTrainingOptions options;
+    stages["tokenizer"] =
+        training::train_tokenizer(clips, clips, config.tokenizer, tokenizer_options, {});
+    data = training::prepare_generator_data(clips, {clips[0]},
+                                            tokenizer::Tokenizer(stages["tokenizer"]),
+                                            retriever::Retriever(stages["retriever"]), {});
+    training::TransformerTrainingOptions options;
     options.batch = 4;
     options.trainer = trainer("masked");
-    stages["masked"] = train_masked(config.masked, data, options, {});
+    stages["masked"] = training::train_masked(config.masked, data, options, {});
     options.trainer = trainer("residual");
-    stages["residual"] = train_residual(config.residual, data, options, {});
+    stages["residual"] = training::train_residual(config.residual, data, options, {});
   }
 };
 

@@ -50,11 +50,11 @@ std::vector<int64_t> sparse_ids(int64_t count) {
   return ids;
 }
 
-std::vector<VectorHit> search_by_definition(const std::vector<int64_t>& ids,
-                                            const std::vector<float>& vectors, int width,
-                                            const float* query, int64_t k,
-                                            const std::vector<int64_t>* allowed) {
-  std::vector<VectorHit> hits;
+std::vector<index::VectorHit> search_by_definition(const std::vector<int64_t>& ids,
+                                                   const std::vector<float>& vectors, int width,
+                                                   const float* query, int64_t k,
+                                                   const std::vector<int64_t>* allowed) {
+  std::vector<index::VectorHit> hits;
   for (size_t row = 0; row < ids.size(); ++row) {
     if (allowed && !std::binary_search(allowed->begin(), allowed->end(), ids[row])) continue;
     double sum = 0;
@@ -65,15 +65,17 @@ std::vector<VectorHit> search_by_definition(const std::vector<int64_t>& ids,
     }
     hits.push_back({ids[row], static_cast<float>(sum)});
   }
-  std::sort(hits.begin(), hits.end(), [](const VectorHit& left, const VectorHit& right) {
-    return left.similarity != right.similarity ? left.similarity > right.similarity
-                                               : left.clip_id < right.clip_id;
-  });
+  std::sort(hits.begin(), hits.end(),
+            [](const index::VectorHit& left, const index::VectorHit& right) {
+              return left.similarity != right.similarity ? left.similarity > right.similarity
+                                                         : left.clip_id < right.clip_id;
+            });
   hits.resize(std::min(hits.size(), static_cast<size_t>(k)));
   return hits;
 }
 
-void expect_hits(const std::vector<VectorHit>& found, const std::vector<VectorHit>& expected) {
+void expect_hits(const std::vector<index::VectorHit>& found,
+                 const std::vector<index::VectorHit>& expected) {
   ASSERT_EQ(found.size(), expected.size());
   for (size_t i = 0; i < found.size(); ++i) {
     EXPECT_EQ(found[i].clip_id, expected[i].clip_id) << "place " << i;
@@ -81,7 +83,7 @@ void expect_hits(const std::vector<VectorHit>& found, const std::vector<VectorHi
   }
 }
 
-int64_t add_test_clip(Database& database, const Clip& clip, int frames) {
+int64_t add_test_clip(db::Database& database, const db::Clip& clip, int frames) {
   Motion motion(frames, 22);
   // Not the number of clips: that comes again after a removal.
   const auto number = static_cast<float>(std::hash<std::string>()(clip.name) % 1000003);
@@ -91,12 +93,12 @@ int64_t add_test_clip(Database& database, const Clip& clip, int frames) {
   return database.add_clip(clip, motion);
 }
 
-void store_motion_vectors(Database& database, const std::string& retriever_hash,
+void store_motion_vectors(db::Database& database, const std::string& retriever_hash,
                           const std::vector<float>& vectors, int width) {
-  std::vector<ClipEmbedding> embeddings;
+  std::vector<db::ClipEmbedding> embeddings;
   auto next = vectors.begin();
-  for (const Clip& clip : database.clips()) {
-    ClipEmbedding embedding;
+  for (const db::Clip& clip : database.clips()) {
+    db::ClipEmbedding embedding;
     embedding.clip_id = clip.id;
     embedding.motion.assign(next, next + width);
     embedding.parts.assign(12, 0.5f);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kWidth = 48;
 
-double recall(const VectorIndex& index, const std::vector<int64_t>& ids,
+double recall(const index::VectorIndex& index, const std::vector<int64_t>& ids,
               const std::vector<float>& vectors, const std::vector<float>& queries, int64_t k) {
   const auto count = static_cast<int64_t>(queries.size()) / kWidth;
   const auto hits = index.search(queries.data(), count, k);
@@ -31,8 +31,8 @@ double recall(const VectorIndex& index, const std::vector<int64_t>& ids,
   for (int64_t query = 0; query < count; ++query) {
     const auto truth =
         search_by_definition(ids, vectors, kWidth, queries.data() + query * kWidth, k);
-    for (const VectorHit& hit : hits[static_cast<size_t>(query)]) {
-      right += std::any_of(truth.begin(), truth.end(), [&](const VectorHit& wanted) {
+    for (const index::VectorHit& hit : hits[static_cast<size_t>(query)]) {
+      right += std::any_of(truth.begin(), truth.end(), [&](const index::VectorHit& wanted) {
         return wanted.clip_id == hit.clip_id && wanted.similarity == hit.similarity;
       });
     }
@@ -45,7 +45,7 @@ TEST(VectorIndex, EqualsTheDefinitionForEverySelectivity) {
   const auto ids = sparse_ids(kCount);
   const auto vectors = random_directions(kCount, kWidth, 1);
   const auto queries = random_directions(kQueries, kWidth, 2);
-  const VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth);
+  const index::VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth);
   for (const double selectivity : {1.0, 0.5, 0.05, 0.005}) {
     CounterRandom random(mix_seed(3, static_cast<uint64_t>(selectivity * 1000)));
     std::vector<int64_t> allowed;
@@ -67,7 +67,7 @@ TEST(VectorIndex, OneQueryOrABatchFindTheSame) {
   const auto ids = sparse_ids(kCount);
   const auto vectors = random_directions(kCount, kWidth, 4);
   const auto queries = random_directions(kQueries, kWidth, 5);
-  const VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth);
+  const index::VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth);
   const auto together = index.search(queries.data(), kQueries, 20);
   for (int64_t query = 0; query < kQueries; ++query) {
     const float* one = queries.data() + query * kWidth;
@@ -82,7 +82,7 @@ TEST(VectorIndex, OneQueryOrABatchFindTheSame) {
 TEST(VectorIndex, ReturnsAllWhenKIsLargerThanTheCount) {
   const auto ids = sparse_ids(7);
   const auto vectors = random_directions(7, kWidth, 6);
-  const VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth);
+  const index::VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth);
   const auto query = random_directions(1, kWidth, 7);
   expect_hits(index.search(query.data(), 1, 1000000).front(),
               search_by_definition(ids, vectors, kWidth, query.data(), 7));
@@ -108,7 +108,7 @@ TEST(VectorIndex, EqualVectorsComeInTheOrderOfTheirIds) {
     equal.push_back(ids[static_cast<size_t>(row)]);
   }
   std::sort(equal.begin(), equal.end());
-  const VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth);
+  const index::VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth);
   for (const int64_t k : {int64_t{1}, int64_t{10}, int64_t{1600}}) {
     const auto hits = index.search(direction.data(), 1, k).front();
     ASSERT_EQ(static_cast<int64_t>(hits.size()), k);
@@ -132,7 +132,7 @@ TEST(VectorIndex, NearlyEqualVectorsAreOrderedRight) {
     }
   }
   const auto ids = sparse_ids(kCount);
-  const VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWide);
+  const index::VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWide);
   for (const int64_t k : {1, 5, 50}) {
     expect_hits(index.search(direction.data(), 1, k).front(),
                 search_by_definition(ids, vectors, kWide, direction.data(), k));
@@ -144,21 +144,21 @@ TEST(VectorIndex, ApproximateTypesFindMostNeighbours) {
   const auto ids = sparse_ids(kCount);
   const auto vectors = clustered_directions(kCount, kWidth, 40, 11);
   const auto queries = clustered_directions(kQueries, kWidth, 40, 12);
-  const IndexStamp stamp{"uuid", 1, "retriever"};
-  const VectorIndex lists(stamp, ids, vectors, kWidth, {"IVF32,Flat", "nprobe=8"});
+  const index::IndexStamp stamp{"uuid", 1, "retriever"};
+  const index::VectorIndex lists(stamp, ids, vectors, kWidth, {"IVF32,Flat", "nprobe=8"});
   EXPECT_GT(recall(lists, ids, vectors, queries, 10), 0.9);
-  const VectorIndex all_lists(stamp, ids, vectors, kWidth, {"IVF32,Flat", "nprobe=32"});
+  const index::VectorIndex all_lists(stamp, ids, vectors, kWidth, {"IVF32,Flat", "nprobe=32"});
   EXPECT_EQ(recall(all_lists, ids, vectors, queries, 10), 1.0);
-  const VectorIndex graph(stamp, ids, vectors, kWidth, {"HNSW16", "efSearch=64"});
+  const index::VectorIndex graph(stamp, ids, vectors, kWidth, {"HNSW16", "efSearch=64"});
   EXPECT_GT(recall(graph, ids, vectors, queries, 10), 0.9);
   // Compressed vectors still give exact similarities of what they find.
-  const VectorIndex compressed(stamp, ids, vectors, kWidth, {"SQ8", ""});
+  const index::VectorIndex compressed(stamp, ids, vectors, kWidth, {"SQ8", ""});
   EXPECT_GT(recall(compressed, ids, vectors, queries, 10), 0.9);
   // With a filter they scan exactly.
   for (const size_t step : {2, 20, 200}) {
     std::vector<int64_t> allowed;
     for (size_t i = 0; i < ids.size(); i += step) allowed.push_back(ids[i]);
-    for (const VectorIndex* index : {&lists, &graph, &compressed}) {
+    for (const index::VectorIndex* index : {&lists, &graph, &compressed}) {
       expect_hits(index->search(queries.data(), 1, 10, &allowed).front(),
                   search_by_definition(ids, vectors, kWidth, queries.data(), 10, &allowed));
     }
@@ -169,30 +169,31 @@ TEST(VectorIndex, FindsKClipsThoughItsListsHoldFewer) {
   const auto ids = sparse_ids(200);
   const auto vectors = random_directions(200, kWidth, 19);
   const auto query = random_directions(1, kWidth, 20);
-  const VectorIndex lists({"uuid", 1, "r"}, ids, vectors, kWidth, {"IVF50,Flat", "nprobe=1"});
+  const index::VectorIndex lists({"uuid", 1, "r"}, ids, vectors, kWidth,
+                                 {"IVF50,Flat", "nprobe=1"});
   expect_hits(lists.search(query.data(), 1, 100).front(),
               search_by_definition(ids, vectors, kWidth, query.data(), 100));
 }
 
 TEST(VectorIndex, AutoChoosesByTheNumberOfVectors) {
-  EXPECT_EQ(resolve_factory("HNSW32", 3), "HNSW32");
-  EXPECT_EQ(resolve_factory("auto", 499999), "Flat");
-  EXPECT_EQ(resolve_factory("auto", 500000), "IVF1024,Flat");   // 2 sqrt(n) = 1414
-  EXPECT_EQ(resolve_factory("auto", 1000000), "IVF2048,Flat");  // 2000
-  EXPECT_EQ(resolve_factory("auto", 1000000000), "IVF16384,Flat");
+  EXPECT_EQ(index::resolve_factory("HNSW32", 3), "HNSW32");
+  EXPECT_EQ(index::resolve_factory("auto", 499999), "Flat");
+  EXPECT_EQ(index::resolve_factory("auto", 500000), "IVF1024,Flat");   // 2 sqrt(n) = 1414
+  EXPECT_EQ(index::resolve_factory("auto", 1000000), "IVF2048,Flat");  // 2000
+  EXPECT_EQ(index::resolve_factory("auto", 1000000000), "IVF16384,Flat");
 }
 
 TEST(VectorIndex, ProbesAreTunedToTheRecall) {
   const auto ids = sparse_ids(3000);
   const auto vectors = clustered_directions(3000, kWidth, 100, 21);
-  const IndexType type{"IVF64,Flat", "IVF64,Flat", "", std::nullopt};
+  const index::IndexType type{"IVF64,Flat", "IVF64,Flat", "", std::nullopt};
   auto exact = std::make_unique<faiss::IndexFlat>(kWidth, faiss::METRIC_INNER_PRODUCT);
   exact->add(3000, vectors.data());
-  IndexSegments segments(build_faiss_index(ids, vectors.data(), kWidth, type, {}),
-                         std::move(exact));
-  const RecallSample sample(segments);
+  index::IndexSegments segments(index::build_faiss_index(ids, vectors.data(), kWidth, type, {}),
+                                std::move(exact));
+  const index::RecallSample sample(segments);
   const double before = sample.measure(segments);  // one list a query
-  const std::string chosen = tune_probes(segments, sample);
+  const std::string chosen = index::tune_probes(segments, sample);
   EXPECT_GE(sample.measure(segments), 0.97);
   const int probes = std::stoi(chosen.substr(chosen.find('=') + 1));
   EXPECT_TRUE(std::has_single_bit(static_cast<unsigned>(probes))) << chosen;
@@ -208,9 +209,9 @@ TEST(VectorIndex, ThreeThreadsReadAtOnce) {
   const auto ids = sparse_ids(kCount);
   const auto vectors = clustered_directions(kCount, kWidth, 30, 13);
   const auto queries = random_directions(kQueries, kWidth, 14);
-  for (const VectorIndexOptions& options :
-       {VectorIndexOptions{}, VectorIndexOptions{"IVF16,Flat", "nprobe=16"}}) {
-    const VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth, options);
+  for (const index::VectorIndexOptions& options :
+       {index::VectorIndexOptions{}, index::VectorIndexOptions{"IVF16,Flat", "nprobe=16"}}) {
+    const index::VectorIndex index({"uuid", 1, "retriever"}, ids, vectors, kWidth, options);
     const auto expected = index.search(queries.data(), kQueries, 10);
     std::atomic<int> wrong = 0;
     const auto read = [&] {
@@ -232,11 +233,11 @@ TEST(VectorIndex, ThreeThreadsReadAtOnce) {
 TEST(VectorIndex, RefusesWrongInput) {
   const auto ids = sparse_ids(20);
   const auto vectors = random_directions(20, kWidth, 15);
-  const IndexStamp stamp{"uuid", 1, "retriever"};
+  const index::IndexStamp stamp{"uuid", 1, "retriever"};
   const auto build_error = [&](const std::vector<int64_t>& some_ids,
                                const std::vector<float>& some_vectors,
-                               const VectorIndexOptions& options = {}) {
-    return error_of([&] { VectorIndex(stamp, some_ids, some_vectors, kWidth, options); });
+                               const index::VectorIndexOptions& options = {}) {
+    return error_of([&] { index::VectorIndex(stamp, some_ids, some_vectors, kWidth, options); });
   };
   auto doubled = ids;
   doubled[3] = doubled[4];
@@ -253,7 +254,7 @@ TEST(VectorIndex, RefusesWrongInput) {
   EXPECT_NE(build_error(ids, vectors, {"IDMap,Flat", ""}).find("IDMap"), std::string::npos);
   EXPECT_NE(build_error(ids, vectors, {"Flat", "nprobes=3"}).find("nprobes"), std::string::npos);
 
-  const VectorIndex index(stamp, ids, vectors, kWidth);
+  const index::VectorIndex index(stamp, ids, vectors, kWidth);
   EXPECT_NE(error_of([&] { index.search(vectors.data(), 1, 0); }).find("k of 1"),
             std::string::npos);
   EXPECT_NE(error_of([&] { index.search(broken.data(), 1, 5); }).find("query 0"),
@@ -265,39 +266,39 @@ TEST(VectorIndex, StopsOnRequest) {
   Monitor monitor;
   monitor.stop = stop.get_token();
   stop.request_stop();
-  EXPECT_THROW(VectorIndex({"uuid", 1, "r"}, sparse_ids(20), random_directions(20, kWidth, 16),
-                           kWidth, {}, monitor),
+  EXPECT_THROW(index::VectorIndex({"uuid", 1, "r"}, sparse_ids(20),
+                                  random_directions(20, kWidth, 16), kWidth, {}, monitor),
                Interrupted);
 }
 
 class StoredIndex : public ::testing::Test {
  protected:
   void SetUp() override {
-    database_.emplace(folder_ / "motions.sqlite", OpenMode::create);
+    database_.emplace(folder_ / "motions.sqlite", db::OpenMode::create);
     for (int i = 0; i < 60; ++i) {
       add_test_clip(*database_, named_clip("clip" + std::to_string(i)));
     }
     store_motion_vectors(*database_, "retriever", random_directions(60, kWidth, 17), kWidth);
-    path_ = default_index_path(database_->path());
+    path_ = index::default_index_path(database_->path());
   }
 
   std::string load_error(const std::string& retriever = "retriever") {
-    return error_of([&] { VectorIndex::open(path_, *database_, retriever); });
+    return error_of([&] { index::VectorIndex::open(path_, *database_, retriever); });
   }
 
   TestFolder folder_;
-  std::optional<Database> database_;
+  std::optional<db::Database> database_;
   std::string path_;
   std::vector<float> queries_ = random_directions(10, kWidth, 18);
 };
 
 TEST_F(StoredIndex, FindsTheSameAfterLoading) {
-  for (const VectorIndexOptions& options :
-       {VectorIndexOptions{}, VectorIndexOptions{"IVF4,Flat", "nprobe=2"},
-        VectorIndexOptions{"HNSW8", "efSearch=20"}}) {
-    auto built = VectorIndex::build(*database_, "retriever", options);
+  for (const index::VectorIndexOptions& options :
+       {index::VectorIndexOptions{}, index::VectorIndexOptions{"IVF4,Flat", "nprobe=2"},
+        index::VectorIndexOptions{"HNSW8", "efSearch=20"}}) {
+    auto built = index::VectorIndex::build(*database_, "retriever", options);
     built.save(path_);
-    const auto loaded = VectorIndex::open(path_, *database_, "retriever");
+    const auto loaded = index::VectorIndex::open(path_, *database_, "retriever");
     EXPECT_EQ(loaded.count(), 60);
     EXPECT_EQ(loaded.width(), kWidth);
     EXPECT_EQ(loaded.type().factory, built.type().factory);
@@ -314,12 +315,12 @@ TEST_F(StoredIndex, RefusesAMissingFile) {
 
 TEST_F(StoredIndex, RefusesEveryCutAndEveryFlippedByte) {
   for (const char* factory : {"Flat", "IVF4,Flat"}) {
-    VectorIndex::build(*database_, "retriever", {factory, ""}).save(path_);
+    index::VectorIndex::build(*database_, "retriever", {factory, ""}).save(path_);
     const std::string content = read_file(path_);
     for (size_t i = 0; i < 40; ++i) {
       const size_t position = i * (content.size() - 1) / 39;
       write_file_atomically(path_, content.substr(0, position));
-      EXPECT_THROW(VectorIndex::open(path_, *database_, "retriever"), FileError)
+      EXPECT_THROW(index::VectorIndex::open(path_, *database_, "retriever"), FileError)
           << "cut at " << position;
       std::string flipped = content;
       flipped[position] = static_cast<char>(flipped[position] ^ 0x10);
@@ -332,13 +333,14 @@ TEST_F(StoredIndex, RefusesEveryCutAndEveryFlippedByte) {
 }
 
 TEST_F(StoredIndex, RefusesAnotherDatabase) {
-  VectorIndex::build(*database_, "retriever").save(path_);
+  index::VectorIndex::build(*database_, "retriever").save(path_);
   const std::string other_path = folder_ / "other.sqlite";
-  Database other(other_path, OpenMode::create);
-  EXPECT_NE(
-      error_of([&] { VectorIndex::open(path_, other, "retriever"); }).find("another database"),
-      std::string::npos);
-  auto index = VectorIndex::open(path_, *database_, "retriever");
+  db::Database other(other_path, db::OpenMode::create);
+  EXPECT_NE(error_of([&] {
+              index::VectorIndex::open(path_, other, "retriever");
+            }).find("another database"),
+            std::string::npos);
+  auto index = index::VectorIndex::open(path_, *database_, "retriever");
   EXPECT_NE(error_of([&] { index.follow(other); }).find("another database"), std::string::npos);
 }
 
@@ -351,41 +353,44 @@ TEST_F(StoredIndex, RefusesALaterState) {
     }
   }
   add_test_clip(*database_, named_clip("one more"));
-  VectorIndex::build(*database_, "retriever").save(path_);
-  const Database older(copy, OpenMode::read_only);
-  EXPECT_NE(error_of([&] { VectorIndex::open(path_, older, "retriever"); }).find("later state"),
-            std::string::npos);
+  index::VectorIndex::build(*database_, "retriever").save(path_);
+  const db::Database older(copy, db::OpenMode::read_only);
+  EXPECT_NE(
+      error_of([&] { index::VectorIndex::open(path_, older, "retriever"); }).find("later state"),
+      std::string::npos);
 }
 
 TEST_F(StoredIndex, KeepsItsTypeAndItsMeasuredRecall) {
-  auto built = VectorIndex::build(*database_, "retriever", {"IVF8,Flat", "nprobe=2"});
+  auto built = index::VectorIndex::build(*database_, "retriever", {"IVF8,Flat", "nprobe=2"});
   ASSERT_TRUE(built.type().recall.has_value());
   EXPECT_GT(*built.type().recall, 0.0);
   EXPECT_LT(*built.type().recall, 1.0);
   built.save(path_);
-  const auto opened = VectorIndex::open(path_, *database_, "retriever");
+  const auto opened = index::VectorIndex::open(path_, *database_, "retriever");
   EXPECT_EQ(opened.type().requested, "IVF8,Flat");
   EXPECT_EQ(opened.type().search_parameters, "nprobe=2");
   EXPECT_EQ(opened.type().recall, built.type().recall);
-  const auto flat = VectorIndex::build(*database_, "retriever");
+  const auto flat = index::VectorIndex::build(*database_, "retriever");
   EXPECT_EQ(flat.type().requested, "auto");
   EXPECT_EQ(flat.type().factory, "Flat");
   EXPECT_FALSE(flat.type().recall.has_value());
 }
 
 TEST_F(StoredIndex, RefusesAnotherRetriever) {
-  VectorIndex::build(*database_, "retriever").save(path_);
+  index::VectorIndex::build(*database_, "retriever").save(path_);
   EXPECT_NE(load_error("newer").find("another retriever"), std::string::npos);
-  EXPECT_NE(error_of([&] { VectorIndex::build(*database_, "newer"); }).find("has no vectors"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of([&] { index::VectorIndex::build(*database_, "newer"); }).find("has no vectors"),
+      std::string::npos);
 }
 
 TEST_F(StoredIndex, RefusesVectorsOfDifferentWidths) {
   auto embeddings = database_->embeddings("retriever");
   embeddings[3].motion.pop_back();
   database_->store_embeddings("retriever", embeddings);
-  EXPECT_NE(error_of([&] { VectorIndex::build(*database_, "retriever"); }).find("47 numbers"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of([&] { index::VectorIndex::build(*database_, "retriever"); }).find("47 numbers"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "motion/features.h"
+#include "motion/vector.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "base/error.h"
 #include "motion/canonical.h"
+#include "remomask/error.h"
 #include "tests/motion/support.h"
 
 namespace remomask {
@@ -20,10 +21,11 @@ using testing_support::moved;
 
 namespace {
 
-constexpr FeatureMode kBothModes[] = {FeatureMode::official, FeatureMode::fixed};
+constexpr motion::FeatureMode kBothModes[] = {motion::FeatureMode::official,
+                                              motion::FeatureMode::fixed};
 
-double largest_feature_difference(const Features& a, const Features& b, int first_row = 0,
-                                  int first_column = 0, int last_column = 263) {
+double largest_feature_difference(const motion::Features& a, const motion::Features& b,
+                                  int first_row = 0, int first_column = 0, int last_column = 263) {
   EXPECT_EQ(a.frames, b.frames);
   double largest = 0;
   for (int t = first_row; t < a.frames; ++t) {
@@ -45,8 +47,8 @@ TEST(Features, HandComputedRowOfATranslatedStatue) {
   Motion motion = make_statue(2, [](int) { return 0.0; });
   for (int j = 0; j < 22; ++j) motion.at(1, j)[0] += 0.03f;
   const Skeleton& skeleton = humanml_skeleton();
-  for (const FeatureMode mode : kBothModes) {
-    const Features f = extract_features(motion, skeleton, mode);
+  for (const motion::FeatureMode mode : kBothModes) {
+    const motion::Features f = motion::extract_features(motion, skeleton, mode);
     ASSERT_EQ(f.frames, 1);
     const float* row = f.row(0);
     EXPECT_NEAR(row[0], 0, 1e-6);
@@ -59,61 +61,65 @@ TEST(Features, HandComputedRowOfATranslatedStatue) {
     for (int c = 259; c < 263; ++c) EXPECT_EQ(row[c], 1.f);  // 0.0009 < 0.002
   }
   for (int j = 0; j < 22; ++j) motion.at(1, j)[0] += 0.02f;
-  const Features fast = extract_features(motion, skeleton, FeatureMode::fixed);
+  const motion::Features fast =
+      motion::extract_features(motion, skeleton, motion::FeatureMode::fixed);
   for (int c = 259; c < 263; ++c) EXPECT_EQ(fast.row(0)[c], 0.f);  // 0.0025 > 0.002
 }
 
 TEST(Features, PositionsAndFeaturesDetermineEachOther) {
   const Skeleton& skeleton = humanml_skeleton();
-  const Motion canonical = canonicalize(winding_walker(150), skeleton);
-  for (const FeatureMode mode : kBothModes) {
-    const Features once = extract_features(canonical, skeleton, mode);
-    const Motion recovered = recover_motion_with_next_frame(once, skeleton);
+  const Motion canonical = motion::canonicalize(winding_walker(150), skeleton);
+  for (const motion::FeatureMode mode : kBothModes) {
+    const motion::Features once = motion::extract_features(canonical, skeleton, mode);
+    const Motion recovered = motion::recover_motion_with_next_frame(once, skeleton);
     ASSERT_EQ(recovered.frames, 150);
-    const Features twice = extract_features(recovered, skeleton, mode);
-    EXPECT_LT(largest_feature_difference(once, twice), 2e-5) << feature_mode_name(mode);
-    if (mode == FeatureMode::official) {
+    const motion::Features twice = motion::extract_features(recovered, skeleton, mode);
+    EXPECT_LT(largest_feature_difference(once, twice), 2e-5) << motion::feature_mode_name(mode);
+    if (mode == motion::FeatureMode::official) {
       EXPECT_LT(largest_difference(recovered, canonical), 2e-5);
     }
-    const Motion shorter = recover_motion(once, skeleton);
+    const Motion shorter = motion::recover_motion(once, skeleton);
     EXPECT_LT(largest_difference(shorter, slice(recovered, 0, 149)), 1e-9);
   }
 }
 
 TEST(Features, FixedModeRecoversTheMotionUpToAYaw) {
   const Skeleton& skeleton = humanml_skeleton();
-  const Motion canonical = canonicalize(winding_walker(150), skeleton);
-  const Motion recovered = recover_motion_with_next_frame(
-      extract_features(canonical, skeleton, FeatureMode::fixed), skeleton);
-  const CanonicalOptions turn_only{false, false, true, true};
-  EXPECT_LT(largest_difference(canonicalize(recovered, skeleton, turn_only),
-                               canonicalize(canonical, skeleton, turn_only)),
+  const Motion canonical = motion::canonicalize(winding_walker(150), skeleton);
+  const Motion recovered = motion::recover_motion_with_next_frame(
+      motion::extract_features(canonical, skeleton, motion::FeatureMode::fixed), skeleton);
+  const motion::CanonicalOptions turn_only{false, false, true, true};
+  EXPECT_LT(largest_difference(motion::canonicalize(recovered, skeleton, turn_only),
+                               motion::canonicalize(canonical, skeleton, turn_only)),
             2e-5);
 }
 
 TEST(Features, AllFramesHaveARow) {
   const Skeleton& skeleton = humanml_skeleton();
-  const Motion canonical = canonicalize(winding_walker(40), skeleton);
-  const Features all = extract_features_all_frames(canonical, skeleton, FeatureMode::fixed);
+  const Motion canonical = motion::canonicalize(winding_walker(40), skeleton);
+  const motion::Features all =
+      motion::extract_features_all_frames(canonical, skeleton, motion::FeatureMode::fixed);
   ASSERT_EQ(all.frames, 40);
-  const Motion recovered = recover_motion(all, skeleton);
-  const CanonicalOptions turn_only{false, false, true, true};
-  EXPECT_LT(largest_difference(canonicalize(recovered, skeleton, turn_only),
-                               canonicalize(canonical, skeleton, turn_only)),
+  const Motion recovered = motion::recover_motion(all, skeleton);
+  const motion::CanonicalOptions turn_only{false, false, true, true};
+  EXPECT_LT(largest_difference(motion::canonicalize(recovered, skeleton, turn_only),
+                               motion::canonicalize(canonical, skeleton, turn_only)),
             2e-5);
 }
 
 TEST(Features, OneWholeTurnFlipsOneRowInOfficialModeAndNoneInFixed) {
   const Skeleton& skeleton = humanml_skeleton();
   const Motion motion = make_statue(200, [](int t) { return 2 * pi * t / 199; });
-  const Features official = extract_features(motion, skeleton, FeatureMode::official);
+  const motion::Features official =
+      motion::extract_features(motion, skeleton, motion::FeatureMode::official);
   int positive = 0, negative = 0;
   for (int t = 85; t < 115; ++t) {
     EXPECT_NEAR(std::abs(official.row(t)[0]), pi / 199, 2e-5) << t;
     (official.row(t)[0] > 0 ? positive : negative)++;
   }
   EXPECT_EQ(std::min(positive, negative), 1);
-  const Features fixed = extract_features(motion, skeleton, FeatureMode::fixed);
+  const motion::Features fixed =
+      motion::extract_features(motion, skeleton, motion::FeatureMode::fixed);
   for (int t = 15; t < 180; ++t) EXPECT_NEAR(fixed.row(t)[0], -pi / 199, 2e-6) << t;
 }
 
@@ -121,8 +127,8 @@ TEST(Features, FastTurnIsInTheRootOfFixedModeOnly) {
   const Skeleton& skeleton = humanml_skeleton();
   const Motion motion =
       make_statue(200, [](int t) { return 2 * pi * std::clamp((t - 90) / 20.0, 0.0, 1.0); });
-  const auto turned = [&](FeatureMode mode) {
-    const Features f = extract_features(motion, skeleton, mode);
+  const auto turned = [&](motion::FeatureMode mode) {
+    const motion::Features f = motion::extract_features(motion, skeleton, mode);
     double sum = 0, largest = 0;
     for (int t = 0; t < f.frames; ++t) {
       sum += 2 * f.row(t)[0] * 180 / pi;
@@ -130,17 +136,18 @@ TEST(Features, FastTurnIsInTheRootOfFixedModeOnly) {
     }
     return largest;
   };
-  EXPECT_LT(turned(FeatureMode::official), 4);
-  EXPECT_NEAR(turned(FeatureMode::fixed), 360, 0.1);
+  EXPECT_LT(turned(motion::FeatureMode::official), 4);
+  EXPECT_NEAR(turned(motion::FeatureMode::fixed), 360, 0.1);
 }
 
 TEST(Features, FixedModeDoesNotKnowTheAbsoluteHeading) {
   const Skeleton& skeleton = humanml_skeleton();
   const Motion motion = winding_walker(120);
-  const Features straight = extract_features(motion, skeleton, FeatureMode::fixed);
+  const motion::Features straight =
+      motion::extract_features(motion, skeleton, motion::FeatureMode::fixed);
   for (const double angle : {0.5, 2.0, 3.1, -2.9}) {
-    const Features turned =
-        extract_features(moved(motion, angle, {4, 0, -1}), skeleton, FeatureMode::fixed);
+    const motion::Features turned = motion::extract_features(moved(motion, angle, {4, 0, -1}),
+                                                             skeleton, motion::FeatureMode::fixed);
     EXPECT_LT(largest_feature_difference(straight, turned), 1e-5) << angle;
   }
 }
@@ -148,9 +155,10 @@ TEST(Features, FixedModeDoesNotKnowTheAbsoluteHeading) {
 TEST(Features, OfficialModeKnowsItInTheRotationsOnly) {
   const Skeleton& skeleton = humanml_skeleton();
   const Motion motion = winding_walker(120);
-  const Features straight = extract_features(motion, skeleton, FeatureMode::official);
-  const Features turned =
-      extract_features(moved(motion, 0.5, {4, 0, -1}), skeleton, FeatureMode::official);
+  const motion::Features straight =
+      motion::extract_features(motion, skeleton, motion::FeatureMode::official);
+  const motion::Features turned = motion::extract_features(moved(motion, 0.5, {4, 0, -1}), skeleton,
+                                                           motion::FeatureMode::official);
   EXPECT_LT(largest_feature_difference(straight, turned, 1, 0, 67), 1e-5);
   EXPECT_LT(largest_feature_difference(straight, turned, 1, 193, 263), 1e-5);
   EXPECT_GT(largest_feature_difference(straight, turned, 1, 67, 193), 0.3);
@@ -159,10 +167,11 @@ TEST(Features, OfficialModeKnowsItInTheRotationsOnly) {
 TEST(Features, WholeWayIsFreeOfPlaceHeadingAndSize) {
   const Skeleton& skeleton = humanml_skeleton();
   const Motion motion = winding_walker(120);
-  for (const FeatureMode mode : kBothModes) {
-    const Features a = extract_features(canonicalize(motion, skeleton), skeleton, mode);
-    const Features b = extract_features(canonicalize(moved(motion, 1.1, {4, 2, -1}, 0.8), skeleton),
-                                        skeleton, mode);
+  for (const motion::FeatureMode mode : kBothModes) {
+    const motion::Features a =
+        motion::extract_features(motion::canonicalize(motion, skeleton), skeleton, mode);
+    const motion::Features b = motion::extract_features(
+        motion::canonicalize(moved(motion, 1.1, {4, 2, -1}, 0.8), skeleton), skeleton, mode);
     EXPECT_LT(largest_feature_difference(a, b), 2e-5);
   }
 }
@@ -170,9 +179,10 @@ TEST(Features, WholeWayIsFreeOfPlaceHeadingAndSize) {
 TEST(Features, OfMirroredMotionAreMirroredFeatures) {
   const Skeleton& skeleton = humanml_skeleton();
   const Motion motion = winding_walker(90);
-  for (const FeatureMode mode : kBothModes) {
-    const Features plain = extract_features(motion, skeleton, mode);
-    const Features mirrored = extract_features(mirror_motion(motion, skeleton), skeleton, mode);
+  for (const motion::FeatureMode mode : kBothModes) {
+    const motion::Features plain = motion::extract_features(motion, skeleton, mode);
+    const motion::Features mirrored =
+        motion::extract_features(motion::mirror_motion(motion, skeleton), skeleton, mode);
     constexpr double kVector[] = {-1, 1, 1};
     constexpr double kSixD[] = {1, -1, -1, -1, 1, 1};
     for (int t = 0; t < plain.frames; ++t) {
@@ -204,14 +214,15 @@ TEST(Features, FixedRotationsStayCloseWhenArmsAreRaisedOverhead) {
   Motion motion = make_statue(2, [](int) { return 0.0; });
   const auto raise = [&](int frame, double tilt) {
     for (const int j : {18, 20}) {
-      motion.set(frame, j,
-                 motion.position(frame, skeleton.parents[j]) +
-                     skeleton.bone_lengths[j] * Vec3(std::sin(tilt), std::cos(tilt), 0));
+      set_joint_position(motion, frame, j,
+                         joint_position(motion, frame, skeleton.parents[j]) +
+                             skeleton.bone_lengths[j] * Vec3(std::sin(tilt), std::cos(tilt), 0));
     }
   };
   raise(0, 0.02);
   raise(1, -0.02);
-  const Features f = extract_features_all_frames(motion, skeleton, FeatureMode::fixed);
+  const motion::Features f =
+      motion::extract_features_all_frames(motion, skeleton, motion::FeatureMode::fixed);
   for (int c = 67; c < 193; ++c) EXPECT_NEAR(f.row(0)[c], f.row(1)[c], 0.06) << c;
 }
 
@@ -220,31 +231,32 @@ TEST(Features, KitSkeletonHasItsOwnLayout) {
   Motion motion(30, 21);
   for (int t = 0; t < motion.frames; ++t) {
     for (int j = 0; j < 21; ++j) {
-      motion.set(t, j, Vec3(30 * std::sin(j + 0.05 * t), 500 + 20 * j, 3 * t + 10 * std::cos(j)));
+      set_joint_position(motion, t, j,
+                         Vec3(30 * std::sin(j + 0.05 * t), 500 + 20 * j, 3 * t + 10 * std::cos(j)));
     }
   }
-  for (const FeatureMode mode : kBothModes) {
-    const Features f = extract_features(motion, skeleton, mode);
+  for (const motion::FeatureMode mode : kBothModes) {
+    const motion::Features f = motion::extract_features(motion, skeleton, mode);
     EXPECT_EQ(f.dim, 251);
-    const Motion again = recover_motion_with_next_frame(f, skeleton);
+    const Motion again = motion::recover_motion_with_next_frame(f, skeleton);
     EXPECT_EQ(again.joints, 21);
-    EXPECT_NEAR(again.position(7, 20).y(), motion.position(7, 20).y(), 1e-3);
+    EXPECT_NEAR(joint_position(again, 7, 20).y(), joint_position(motion, 7, 20).y(), 1e-3);
   }
 }
 
 TEST(Features, RefusesWhatItCannotUse) {
   const Skeleton& skeleton = humanml_skeleton();
   const auto extract = [&](const Motion& motion) {
-    extract_features(motion, skeleton, FeatureMode::fixed);
+    motion::extract_features(motion, skeleton, motion::FeatureMode::fixed);
   };
   EXPECT_THROW(extract(make_walker(1)), Error);
   EXPECT_THROW(extract(Motion(10, 21)), Error);
   Motion broken = make_walker(5);
   broken.at(3, 4)[1] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(extract(broken), Error);
-  EXPECT_THROW(recover_motion(Features(4, 251), skeleton), Error);
-  EXPECT_THROW(parse_feature_mode("offical"), Error);
-  EXPECT_EQ(parse_feature_mode("fixed"), FeatureMode::fixed);
+  EXPECT_THROW(motion::recover_motion(motion::Features(4, 251), skeleton), Error);
+  EXPECT_THROW(motion::parse_feature_mode("offical"), Error);
+  EXPECT_EQ(motion::parse_feature_mode("fixed"), motion::FeatureMode::fixed);
 }
 
 }  // namespace remomask

@@ -1,4 +1,5 @@
 #include "tests/motion/support.h"
+#include "motion/vector.h"
 
 #include <unistd.h>
 
@@ -49,13 +50,13 @@ Motion make_motion(int frames, double first_phase, double phase_step, double spe
   Motion motion(frames, skeleton.joints());
   Vec3 root(0, 0.93, 0);
   for (int t = 0; t < frames; ++t) {
-    const Quat turn = yaw_rotation(heading(t));
+    const Quat turn = motion::yaw_rotation(heading(t));
     const std::vector<Vec3> directions = walking_pose(first_phase + phase_step * t);
-    motion.set(t, 0, root);
+    set_joint_position(motion, t, 0, root);
     for (int j = 1; j < skeleton.joints(); ++j) {
-      motion.set(t, j,
-                 motion.position(t, skeleton.parents[j]) +
-                     turn * directions[j] * skeleton.bone_lengths[j]);
+      set_joint_position(motion, t, j,
+                         joint_position(motion, t, skeleton.parents[j]) +
+                             turn * directions[j] * skeleton.bone_lengths[j]);
     }
     root += turn * Vec3(0, 0, speed);
   }
@@ -104,10 +105,10 @@ Motion make_statue(int frames, const std::function<double(int)>& heading) {
 
 Motion moved(const Motion& motion, double angle, const Vec3& shift, double scale) {
   Motion result = motion;
-  const Quat turn = yaw_rotation(angle);
+  const Quat turn = motion::yaw_rotation(angle);
   for (int t = 0; t < motion.frames; ++t) {
     for (int j = 0; j < motion.joints; ++j) {
-      result.set(t, j, scale * (turn * motion.position(t, j) + shift));
+      set_joint_position(result, t, j, scale * (turn * joint_position(motion, t, j) + shift));
     }
   }
   return result;

@@ -3,7 +3,8 @@
 #include <functional>
 #include <string>
 
-#include "motion/motion.h"
+#include "motion/vector.h"
+#include "remomask/motion.h"
 
 namespace remomask::testing_support {
 

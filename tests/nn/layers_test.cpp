@@ -9,7 +9,7 @@ namespace remomask {
 namespace {
 
 TEST(SinusoidalPositionsTest, FirstValues) {
-  const auto table = sinusoidal_positions(3, 4);
+  const auto table = nn::sinusoidal_positions(3, 4);
   EXPECT_FLOAT_EQ(table[0][0].item<float>(), 0.f);
   EXPECT_FLOAT_EQ(table[0][1].item<float>(), 1.f);
   EXPECT_NEAR(table[2][0].item<float>(), std::sin(2.0), 1e-6);
@@ -21,7 +21,7 @@ TEST(MultiHeadAttentionTest, MatchesAnExplicitLoop) {
   const int64_t batch = 2, n = 3, m = 4, width = 6, heads = 2, d = width / heads;
   const auto q = torch::randn({batch, n, width}), k = torch::randn({batch, m, width});
   const auto v = torch::randn({batch, m, width}), bias = torch::randn({batch, heads, n, m});
-  const auto out = multi_head_attention(q, k, v, bias, heads);
+  const auto out = nn::multi_head_attention(q, k, v, bias, heads);
   for (int64_t b = 0; b < batch; ++b) {
     for (int64_t h = 0; h < heads; ++h) {
       for (int64_t i = 0; i < n; ++i) {
@@ -47,7 +47,7 @@ TEST(MultiHeadAttentionTest, MatchesAnExplicitLoop) {
 
 TEST(EncoderStackTest, AloneEqualsPaddedBatch) {
   torch::manual_seed(2);
-  EncoderStack stack(2, 16, 4, 32, 0.1);
+  nn::EncoderStack stack(2, 16, 4, 32, 0.1);
   stack->eval();
   torch::NoGradGuard no_grad;
   const auto shorter = torch::randn({1, 3, 16}), longer = torch::randn({1, 7, 16});
@@ -62,8 +62,8 @@ TEST(EncoderStackTest, AloneEqualsPaddedBatch) {
 // vanish through the blocks (the official attention loses all of it).
 TEST(EncoderStackTest, KeepsTokensApartAtInitialisation) {
   torch::manual_seed(3);
-  EncoderBlock block(64, 4, 128, 0.0);
-  initialise_transformer_weights(*block);
+  nn::EncoderBlock block(64, 4, 128, 0.0);
+  nn::initialise_transformer_weights(*block);
   torch::NoGradGuard no_grad;
   auto x = torch::randn({2, 40, 64});
   for (int layer = 0; layer < 8; ++layer) {
@@ -75,7 +75,7 @@ TEST(EncoderStackTest, KeepsTokensApartAtInitialisation) {
 
 TEST(EncoderBlockTest, GradientsMatchFiniteDifferences) {
   torch::manual_seed(4);
-  EncoderBlock block(8, 2, 12, 0.0);
+  nn::EncoderBlock block(8, 2, 12, 0.0);
   block->to(torch::kDouble);
   auto x = torch::randn({1, 3, 8}, torch::kDouble).requires_grad_(true);
   const auto weight = torch::randn({1, 3, 8}, torch::kDouble);

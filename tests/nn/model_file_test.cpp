@@ -6,9 +6,9 @@
 
 #include <filesystem>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "nn/threads.h"
+#include "remomask/error.h"
 
 namespace remomask {
 namespace {
@@ -19,7 +19,7 @@ class ModelFileTest : public ::testing::Test {
   const std::string path_ = (std::filesystem::temp_directory_path() /
                              ("remomask_model_" + std::to_string(::getpid()) + ".safetensors"))
                                 .string();
-  ModelStage stage(const std::string& kind) const {
+  nn::ModelStage stage(const std::string& kind) const {
     return {kind,
             {{"preset", "tiny"}},
             {{"weight", torch::randn({3, 4})},
@@ -29,31 +29,31 @@ class ModelFileTest : public ::testing::Test {
 };
 
 TEST_F(ModelFileTest, SaveAndLoadIsExact) {
-  const ModelStage a = stage("tokenizer"), b = stage("masked");
-  save_model(path_, {a, b});
-  const auto loaded = load_model(path_);
+  const nn::ModelStage a = stage("tokenizer"), b = stage("masked");
+  nn::save_model(path_, {a, b});
+  const auto loaded = nn::load_model(path_);
   ASSERT_EQ(loaded.size(), 2u);
   EXPECT_TRUE(loaded.at("tokenizer").tensors.at("weight").equal(a.tensors.at("weight")));
   EXPECT_TRUE(loaded.at("masked").tensors.at("count").equal(b.tensors.at("count")));
   EXPECT_EQ(loaded.at("masked").config, b.config);
-  EXPECT_EQ(stage_hash(loaded.at("masked")), stage_hash(b));
-  EXPECT_NE(stage_hash(a), stage_hash(b));
+  EXPECT_EQ(nn::stage_hash(loaded.at("masked")), nn::stage_hash(b));
+  EXPECT_NE(nn::stage_hash(a), nn::stage_hash(b));
 }
 
 TEST_F(ModelFileTest, HalfPrecisionRoundsOnce) {
-  const ModelStage a = stage("tokenizer");
-  save_model(path_, {a}, /*half=*/true);
-  const ModelStage once = load_stage(path_, "tokenizer");
+  const nn::ModelStage a = stage("tokenizer");
+  nn::save_model(path_, {a}, /*half=*/true);
+  const nn::ModelStage once = nn::load_stage(path_, "tokenizer");
   EXPECT_EQ(once.tensors.at("weight").scalar_type(), torch::kFloat);
   EXPECT_LT((once.tensors.at("weight") - a.tensors.at("weight")).abs().max().item<float>(), 2e-3);
-  save_model(path_, {once}, true);
-  EXPECT_EQ(stage_hash(load_stage(path_, "tokenizer")), stage_hash(once));
+  nn::save_model(path_, {once}, true);
+  EXPECT_EQ(nn::stage_hash(nn::load_stage(path_, "tokenizer")), nn::stage_hash(once));
 }
 
 TEST_F(ModelFileTest, MissingStageNamesWhatIsThere) {
-  save_model(path_, {stage("tokenizer")});
+  nn::save_model(path_, {stage("tokenizer")});
   try {
-    load_stage(path_, "masked");
+    nn::load_stage(path_, "masked");
     FAIL() << "no error";
   } catch (const FileError& error) {
     EXPECT_NE(std::string(error.what()).find("it holds: tokenizer"), std::string::npos);
@@ -61,7 +61,7 @@ TEST_F(ModelFileTest, MissingStageNamesWhatIsThere) {
 }
 
 TEST_F(ModelFileTest, BrokenFilesAreRefused) {
-  save_model(path_, {stage("tokenizer")});
+  nn::save_model(path_, {stage("tokenizer")});
   const std::string good = read_file(path_);
   std::string alien(good);
   alien.replace(alien.find("remomask-model"), 14, "another--model");
@@ -76,26 +76,26 @@ TEST_F(ModelFileTest, BrokenFilesAreRefused) {
       huge_header, shape,   std::string(1000, '\0')};
   for (size_t i = 0; i < broken.size(); ++i) {
     write_file_atomically(path_, broken[i]);
-    EXPECT_THROW(load_model(path_), FileError) << "case " << i;
+    EXPECT_THROW(nn::load_model(path_), FileError) << "case " << i;
   }
 }
 
 TEST_F(ModelFileTest, EveryTensorMustFit) {
   torch::nn::Linear linear(3, 2);
-  TensorMap tensors = module_tensors(*linear);
-  EXPECT_NO_THROW(load_module_tensors(*linear, tensors, "test"));
-  TensorMap missing = tensors;
+  nn::TensorMap tensors = nn::module_tensors(*linear);
+  EXPECT_NO_THROW(nn::load_module_tensors(*linear, tensors, "test"));
+  nn::TensorMap missing = tensors;
   missing.erase("bias");
-  EXPECT_THROW(load_module_tensors(*linear, missing, "test"), Error);
-  TensorMap extra = tensors;
+  EXPECT_THROW(nn::load_module_tensors(*linear, missing, "test"), Error);
+  nn::TensorMap extra = tensors;
   extra["more"] = torch::ones({1});
-  EXPECT_THROW(load_module_tensors(*linear, extra, "test"), Error);
-  TensorMap other = tensors;
+  EXPECT_THROW(nn::load_module_tensors(*linear, extra, "test"), Error);
+  nn::TensorMap other = tensors;
   other["bias"] = torch::ones({5});
-  EXPECT_THROW(load_module_tensors(*linear, other, "test"), Error);
+  EXPECT_THROW(nn::load_module_tensors(*linear, other, "test"), Error);
 }
 
-TEST(ThreadsTest, NegativeNumbersAreRefused) { EXPECT_THROW(set_compute_threads(-1), Error); }
+TEST(ThreadsTest, NegativeNumbersAreRefused) { EXPECT_THROW(nn::set_compute_threads(-1), Error); }
 
 }  // namespace
 }  // namespace remomask

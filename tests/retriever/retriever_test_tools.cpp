@@ -3,8 +3,8 @@
 #include <torch/utils.h>
 
 #include "base/random.h"
+#include "encoders/text_tower.h"
 #include "retriever/retriever_model.h"
-#include "text/text_tower.h"
 
 namespace remomask {
 
@@ -20,19 +20,19 @@ std::string caption_of_kind(int kind) {
 
 }  // namespace
 
-Features random_features(int frames, uint64_t seed) {
+motion::Features random_features(int frames, uint64_t seed) {
   CounterRandom random(seed);
-  Features features(frames, 263);
+  motion::Features features(frames, 263);
   for (float& value : features.values) value = static_cast<float>(random.normal());
   return features;
 }
 
-std::vector<TrainingClip> separable_clips(int kinds, int repeats, uint64_t seed) {
-  std::vector<TrainingClip> clips;
+std::vector<db::TrainingClip> separable_clips(int kinds, int repeats, uint64_t seed) {
+  std::vector<db::TrainingClip> clips;
   for (int kind = 0; kind < kinds; ++kind) {
-    const Features pattern = random_features(1, 1000 + static_cast<uint64_t>(kind));
+    const motion::Features pattern = random_features(1, 1000 + static_cast<uint64_t>(kind));
     for (int repeat = 0; repeat < repeats; ++repeat) {
-      TrainingClip clip;
+      db::TrainingClip clip;
       clip.group = static_cast<int>(clips.size());
       clip.clip_id = clip.group + 1;
       clip.name = std::to_string(clip.group);
@@ -48,21 +48,21 @@ std::vector<TrainingClip> separable_clips(int kinds, int repeats, uint64_t seed)
   return clips;
 }
 
-RetrieverConfig tiny_retriever_config() {
-  RetrieverConfig config = retriever_preset("tiny");
-  TextEncoderConfig text = text_encoder_preset("tiny");
+retriever::RetrieverConfig tiny_retriever_config() {
+  retriever::RetrieverConfig config = retriever::retriever_preset("tiny");
+  encoders::TextEncoderConfig text = encoders::text_encoder_preset("tiny");
   std::vector<std::string> captions;
   for (int kind = 0; kind < 24; ++kind) captions.push_back(caption_of_kind(kind));
-  text.vocabulary = train_wordpiece(captions, 300);
+  text.vocabulary = text::train_wordpiece(captions, 300);
   config.text_tower = text;
   return config;
 }
 
-Retriever untrained_retriever(uint64_t seed) {
+retriever::Retriever untrained_retriever(uint64_t seed) {
   torch::manual_seed(seed);
-  const RetrieverConfig config = tiny_retriever_config();
-  RetrieverModel model(config);
-  return Retriever({"retriever", config, module_tensors(model)});
+  const retriever::RetrieverConfig config = tiny_retriever_config();
+  retriever::RetrieverModel model(config);
+  return retriever::Retriever({"retriever", config, nn::module_tensors(model)});
 }
 
 }  // namespace remomask

@@ -10,16 +10,16 @@
 namespace remomask {
 
 /// Noise of the given length; the same for the same seed.
-Features random_features(int frames, uint64_t seed);
+motion::Features random_features(int frames, uint64_t seed);
 
 /// `kinds` kinds of motion (a constant pattern each, with noise), each with its
 /// own words, `repeats` clips a kind; every clip is a group of its own.
-std::vector<TrainingClip> separable_clips(int kinds, int repeats, uint64_t seed);
+std::vector<db::TrainingClip> separable_clips(int kinds, int repeats, uint64_t seed);
 
 /// Preset tiny with a text tower over the captions of separable_clips().
-RetrieverConfig tiny_retriever_config();
+retriever::RetrieverConfig tiny_retriever_config();
 
 /// With random weights.
-Retriever untrained_retriever(uint64_t seed);
+retriever::Retriever untrained_retriever(uint64_t seed);
 
 }  // namespace remomask

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "base/error.h"
+#include "remomask/error.h"
 #include "text/utf8.h"
 
 namespace remomask {
@@ -36,41 +36,42 @@ TEST(Caption, NormalisesByTable) {
       {" . ", ""},
       {"?!", ""},
   };
-  for (const CaptionCase& c : cases) EXPECT_EQ(normalise_caption(c.input), c.expected) << c.input;
+  for (const CaptionCase& c : cases)
+    EXPECT_EQ(text::normalise_caption(c.input), c.expected) << c.input;
 }
 
 TEST(Caption, IsIdempotent) {
   for (const char* text :
        {"A person walks 4 Steps.", "a\u2026b .", "\u201cX\u201d 7...", "12, 13", "kick 2!"}) {
-    const std::string once = normalise_caption(text);
-    EXPECT_EQ(normalise_caption(once), once);
+    const std::string once = text::normalise_caption(text);
+    EXPECT_EQ(text::normalise_caption(once), once);
   }
 }
 
 TEST(Caption, EmptyPromptIsAnErrorWithRemedy) {
   try {
-    normalise_prompt(" \u200b. ");
+    text::normalise_prompt(" \u200b. ");
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("describe the motion"), std::string::npos);
   }
-  EXPECT_EQ(normalise_prompt("Walk."), "walk");
+  EXPECT_EQ(text::normalise_prompt("Walk."), "walk");
 }
 
 TEST(Caption, VeryLongTextIsCut) {
-  EXPECT_EQ(normalise_caption(std::string(100000, 'x')).size(), kMostCaptionBytes);
+  EXPECT_EQ(text::normalise_caption(std::string(100000, 'x')).size(), text::kMostCaptionBytes);
 }
 
 TEST(Caption, Utf8LeavesOutOverlongAndSurrogates) {
-  EXPECT_EQ(decode_utf8("a\xc0\xaf"
-                        "b"),
+  EXPECT_EQ(text::decode_utf8("a\xc0\xaf"
+                              "b"),
             (std::vector<char32_t>{'a', 'b'}));
-  EXPECT_EQ(decode_utf8("\xed\xa0\x80"
-                        "c"),
+  EXPECT_EQ(text::decode_utf8("\xed\xa0\x80"
+                              "c"),
             (std::vector<char32_t>{'c'}));
-  EXPECT_EQ(decode_utf8("\xf0\x9f\x98\x80"), (std::vector<char32_t>{0x1F600}));
+  EXPECT_EQ(text::decode_utf8("\xf0\x9f\x98\x80"), (std::vector<char32_t>{0x1F600}));
   std::string text;
-  for (const char32_t point : {0x41, 0xE4, 0x20AC, 0x1F600}) append_utf8(text, point);
+  for (const char32_t point : {0x41, 0xE4, 0x20AC, 0x1F600}) text::append_utf8(text, point);
   EXPECT_EQ(text, "A\u00e4\u20ac\U0001F600");
 }
 

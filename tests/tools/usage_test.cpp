@@ -9,10 +9,9 @@
 namespace remomask {
 namespace {
 
-const std::vector<std::string> kCommands = {"generate",   "search",   "import",  "index",
-                                            "train",      "evaluate", "convert", "sheet",
-                                            "procedural", "info",     "db",      "edit",
-                                            "ablate"};
+const std::vector<std::string> kCommands = {"generate", "search",  "import", "index",      "train",
+                                            "evaluate", "convert", "sheet",  "procedural", "info",
+                                            "db",       "edit",    "ablate"};
 
 TEST(UsageTest, HelpNamesEveryCommandAndEachHasAnExample) {
   const ProgramResult help = run_program({"--help"});

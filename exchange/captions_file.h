@@ -1,0 +1,45 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace remomask::exchange {
+
+/// One line of a captions file.
+struct CaptionEntry {
+  std::string clip;  ///< file stem, or path in the folder without extension
+  std::vector<std::string> captions;
+  nlohmann::json labels = nlohmann::json::object();
+  std::string split = "none";
+  std::string name, group, licence;  ///< of the clip; empty: as the import chooses
+  std::vector<std::string> tags;
+  /// The file holds stored positions, which are taken as they are: labels that
+  /// say how a file is read were of the file it once came from.
+  bool canonical = false;
+  long line = 0;
+};
+
+/// Captions of a folder of motion files: JSON Lines of
+/// {"clip": "...", "captions": ["..."], "labels": {...}, "split": "train|val|test|none"},
+/// and, as an export writes them, "name", "group", "licence", "tags", "canonical".
+class CaptionsFile {
+ public:
+  CaptionsFile() = default;
+  /// Throws FileError with the line for anything that is not such a line, or a
+  /// clip that is given twice.
+  explicit CaptionsFile(const std::string& path);
+
+  const std::string& path() const { return path_; }
+  const std::vector<CaptionEntry>& entries() const { return entries_; }
+  /// nullptr when the clip is not there.
+  const CaptionEntry* find(const std::string& clip) const;
+
+ private:
+  std::string path_;
+  std::vector<CaptionEntry> entries_;
+  std::unordered_map<std::string, size_t> places_;
+};
+
+}  // namespace remomask::exchange

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+namespace remomask::exchange {
+
+/// Frames [first, last) of a longer motion.
+struct ClipWindow {
+  int first = 0, last = 0;
+  bool operator==(const ClipWindow&) const = default;
+};
+
+struct WindowOptions {
+  int min_frames = 20, max_frames = 196, overlap = 40;
+};
+
+/// A motion of up to max_frames + kWindowSlack frames stays whole: the networks
+/// drop the last 0.2 s of such a clip, two clips for them would be worse (and
+/// HumanML3D holds clips of 199 frames).
+constexpr int kWindowSlack = 4;
+
+/// Cuts `frames` frames into windows of max_frames that overlap; every frame is
+/// in one. The last is flush with the end. Where it would bring fewer than
+/// min_frames new frames, the one before it is moved to the end instead, or, if
+/// that is the first, the motion is cut into two equal windows.
+/// Throws Error for options that contradict each other.
+std::vector<ClipWindow> clip_windows(int frames, const WindowOptions& options);
+
+}  // namespace remomask::exchange

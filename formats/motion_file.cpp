@@ -1,0 +1,162 @@
+#include "formats/motion_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "formats/axis_detection.h"
+#include "formats/bvh.h"
+#include "formats/inverse_kinematics.h"
+#include "formats/npy.h"
+#include "formats/skeleton_map.h"
+#include "motion/canonical.h"
+#include "motion/features.h"
+#include "remomask/error.h"
+
+namespace remomask::formats {
+
+namespace {
+
+constexpr int kJoints = 22;
+
+std::string lower_extension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+void check_options(const MotionFileOptions& options) {
+  if (options.metres_per_unit &&
+      !(*options.metres_per_unit > 0 && std::isfinite(*options.metres_per_unit))) {
+    throw Error("metres per unit must be a number above zero");
+  }
+  if (options.up_axis && *options.up_axis != 'X' && *options.up_axis != 'Y' &&
+      *options.up_axis != 'Z') {
+    throw Error(std::string("the up axis is X, Y or Z, not \"") + *options.up_axis + "\"");
+  }
+  if (options.skip_frames < 0) throw Error("the number of frames to skip cannot be negative");
+}
+
+SkeletonMap choose_map(const Bvh& bvh, const std::string& wanted, const std::string& path) {
+  if (wanted.empty()) return find_skeleton_map(shipped_skeleton_maps(), bvh, path);
+  for (const SkeletonMap& map : shipped_skeleton_maps()) {
+    if (map.name == wanted) return find_skeleton_map({map}, bvh, path);
+  }
+  if (!std::filesystem::exists(wanted)) {
+    std::vector<std::string> names;
+    for (const SkeletonMap& map : shipped_skeleton_maps()) names.push_back(map.name);
+    throw Error(fmt::format("there is no skeleton map \"{}\"; name a file or one of {}", wanted,
+                            fmt::join(names, ", ")));
+  }
+  return find_skeleton_map(parse_skeleton_maps(read_file(wanted), wanted), bvh, path);
+}
+
+Motion skip_first(const Motion& motion, int skip) {
+  if (skip >= motion.frames) {
+    throw Error(fmt::format("cannot skip {} frames of {}", skip, motion.frames));
+  }
+  return skip == 0 ? motion : slice(motion, skip, motion.frames);
+}
+
+/// Raw positions at the source's rate -> 20 fps, metres, Y up; canonical where asked for.
+void bring_to_metres(Motion raw, const Motion* rest_pose, const MotionFileOptions& options,
+                     LoadedMotion& loaded) {
+  loaded.source_frames = raw.frames;
+  raw = skip_first(raw, options.skip_frames);
+  loaded.up_axis = options.up_axis ? *options.up_axis : detect_up_axis(raw, rest_pose);
+  loaded.metres_per_unit =
+      options.metres_per_unit ? *options.metres_per_unit : detect_metres_per_unit(raw);
+  const Skeleton& skeleton = humanml_skeleton();
+  Motion motion = motion::resample(raw, loaded.source_fps, skeleton.fps);
+  for (float& value : motion.positions) {
+    value = static_cast<float>(value * loaded.metres_per_unit);
+  }
+  turn_up_axis(motion, loaded.up_axis);
+  loaded.motion = options.canonical ? motion::canonicalize(motion, skeleton) : std::move(motion);
+}
+
+LoadedMotion load_bvh_motion(const std::string& path, const MotionFileOptions& options) {
+  const Bvh bvh = read_bvh(path);
+  const SkeletonMap map = choose_map(bvh, options.skeleton_map, path);
+  MappedKinematics kinematics(bvh, map);
+  Motion raw(bvh.frames, kJoints), rest(1, kJoints);
+  for (int t = 0; t < bvh.frames; ++t) kinematics.positions(t, raw.at(t, 0));
+  kinematics.rest_positions(rest.at(0, 0));
+  LoadedMotion loaded;
+  loaded.skeleton_map = map.name;
+  loaded.source_fps = 1 / bvh.frame_time;
+  bring_to_metres(std::move(raw), &rest, options, loaded);
+  return loaded;
+}
+
+LoadedMotion load_npy_motion(const std::string& path, const MotionFileOptions& options) {
+  NpyArray array = read_npy(path);
+  const Skeleton& skeleton = humanml_skeleton();
+  const std::vector<size_t>& shape = array.shape;
+  const auto dim = static_cast<size_t>(skeleton.feature_dim());
+  const bool features = shape.size() == 2 && shape[1] == dim;
+  const bool joints = shape.size() == 3 && shape[1] == kJoints && shape[2] == 3;
+  if ((!features && !joints) || shape[0] < 1 || shape[0] > 10'000'000) {
+    throw FileError(path, 0,
+                    fmt::format("has shape ({}); frames x 22 x 3 joints or frames x {} features "
+                                "are needed",
+                                fmt::join(shape, ", "), dim));
+  }
+  Motion raw;
+  if (features) {
+    motion::Features rows(static_cast<int>(shape[0]), skeleton.feature_dim());
+    rows.values = std::move(array.values);
+    raw = motion::recover_motion(rows, skeleton);
+  } else {
+    raw = Motion(static_cast<int>(shape[0]), kJoints);
+    raw.positions = std::move(array.values);
+  }
+  LoadedMotion loaded;
+  loaded.source_fps = skeleton.fps;
+  bring_to_metres(std::move(raw), nullptr, options, loaded);
+  return loaded;
+}
+
+}  // namespace
+
+LoadedMotion load_motion_file(const std::string& path, const MotionFileOptions& options) {
+  check_options(options);
+  const std::string extension = lower_extension(path);
+  try {
+    if (extension == ".bvh") return load_bvh_motion(path, options);
+    if (extension == ".npy") return load_npy_motion(path, options);
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    throw FileError(path, 0, error.what());
+  }
+  throw FileError(path, 0, "is of no known kind; motions are read from .bvh and .npy");
+}
+
+void save_motion_file(const std::string& path, const Motion& motion, const FileMetadata& metadata) {
+  if (motion.joints != kJoints) {
+    throw Error(
+        fmt::format("only motions of 22 joints can be written, this one has {}", motion.joints));
+  }
+  const std::string extension = lower_extension(path);
+  if (extension == ".bvh") {
+    write_file_atomically(path, format_bvh(motion_to_bvh(motion)));
+  } else if (extension == ".npy") {
+    const NpyArray array{{static_cast<size_t>(motion.frames), kJoints, 3}, motion.positions};
+    write_file_atomically(path, format_npy(array));
+  } else {
+    throw FileError(path, 0, "is of no known kind; motions are written as .bvh or .npy");
+  }
+  if (metadata.empty()) return;
+  nlohmann::ordered_json fields;
+  for (const auto& [name, value] : metadata) fields[name] = value;
+  write_file_atomically(
+      path + ".json",
+      fields.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace remomask::formats

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lab/ablation_exam.h"
+#include "training/model_training.h"
+
+namespace remomask::lab {
+
+/// What an ablation trains on and asks about.
+struct AblationClips {
+  training::TrainingSplits training;    ///< `train` with mirror twins
+  std::vector<db::TrainingClip> asked;  ///< of the split that prompts come from
+};
+
+/// Clips of the splits train, val and `asked` of these sources (empty: all), with
+/// group numbers that agree between them. Throws FileError without training clips
+/// or clips to ask about.
+AblationClips load_ablation_clips(const db::Database& database, const std::string& asked,
+                                  const std::vector<std::string>& sources);
+
+/// The exam of `prompts` prompts from the captions of the asked clips, spread over
+/// their contents (label_prompts.h). Keeps references to judge and clips.
+AblationExam make_ablation_exam(const evaluation::Evaluator& judge, const db::Database& database,
+                                const AblationClips& clips, int prompts, uint64_t seed);
+
+}  // namespace remomask::lab

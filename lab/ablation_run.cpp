@@ -1,0 +1,211 @@
+#include "lab/ablation_run.h"
+
+#include <fmt/format.h>
+#include <torch/types.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "base/file.h"
+#include "motion/features.h"
+#include "pipeline/motion_generator.h"
+#include "remomask/error.h"
+
+namespace remomask::lab {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kGuessedSpeed = 10;  // 10^9 operations a second
+
+std::string job_key(const AblationJob& job) { return fs::path(job.file).filename().string(); }
+
+std::vector<float> row_of(const at::Tensor& matrix, int64_t row) {
+  const at::Tensor vector = matrix[row].contiguous();
+  return {vector.data_ptr<float>(), vector.data_ptr<float>() + vector.numel()};
+}
+
+/// Passes the monitor of one job on as progress of the whole plan.
+class PlanProgress {
+ public:
+  PlanProgress(const AblationPlan& plan, const AblationClock& clock, const Monitor& monitor)
+      : plan_(plan), clock_(clock), monitor_(monitor) {}
+
+  /// The monitor of job `number`, which is 0 at its beginning.
+  Monitor of_job(size_t number) const {
+    Monitor job;
+    job.stop = monitor_.stop;
+    job.progress = [this, number](const Progress& progress) {
+      const bool own = progress.stage.starts_with("train ") || progress.stage == "answer prompts";
+      report(number, own && progress.total > 0 ? progress.done / progress.total : 0,
+             progress.detail);
+    };
+    return job;
+  }
+
+  void report(size_t number, double share, const std::string& detail) const {
+    double done = 0, total = 0;
+    for (size_t i = 0; i < plan_.jobs.size(); ++i) {
+      const double seconds = clock_.seconds(plan_.jobs[i]);
+      total += seconds;
+      if (i < number) done += seconds;
+      if (i == number) done += share * seconds;
+    }
+    const bool ended = number == plan_.jobs.size();
+    const std::string title =
+        ended ? "all done"
+              : fmt::format("job {} of {}: {} {:.0f} %  {}", number + 1, plan_.jobs.size(),
+                            plan_.jobs[number].title, 100 * share, detail);
+    monitor_.report({"ablate", std::round(ended ? total : done), std::round(total), title});
+  }
+
+ private:
+  const AblationPlan& plan_;
+  const AblationClock& clock_;
+  const Monitor& monitor_;
+};
+
+nlohmann::json trial_document(const AblationPlan& plan, const AblationTrial& trial,
+                              const ExamResult& result) {
+  const AblationModel& model = plan.models[trial.model];
+  nlohmann::json document = {{"variant", model.variant},
+                             {"seed", model.seed},
+                             {"sweep", trial.sweep},
+                             {"sampling", sampling_description(trial.sampling)},
+                             {"figures", result}};
+  for (const auto& [stage, file] : model.files) {
+    const nlohmann::json config = nn::load_stage(file, stage).config;
+    const auto& place = config.contains("training") ? config["training"] : config;
+    if (place.contains("history") && !place["history"].empty()) {
+      document["validation"][stage] = place["history"].back();
+    }
+  }
+  return document;
+}
+
+}  // namespace
+
+AblationClock::AblationClock(std::string path) : path_(std::move(path)) {
+  if (!fs::exists(path_)) return;
+  measured_ = nlohmann::json::parse(read_file(path_), nullptr, false);
+  if (!measured_.is_object()) {
+    throw FileError(path_, 0, "is no record of times; remove it");
+  }
+}
+
+void AblationClock::note(const AblationJob& job, double seconds) {
+  measured_[job_key(job)] = {
+      {"kind", job.kind}, {"seconds", seconds}, {"gigaoperations", job.gigaoperations}};
+  write_file_atomically(path_, measured_.dump(1));
+}
+
+double AblationClock::seconds(const AblationJob& job) const {
+  if (const auto found = measured_.find(job_key(job)); found != measured_.end()) {
+    return found->at("seconds");
+  }
+  double kind_seconds = 0, kind_operations = 0, all_seconds = 0, all_operations = 0;
+  for (const auto& entry : measured_) {
+    const double seconds = entry.at("seconds"), operations = entry.at("gigaoperations");
+    all_seconds += seconds;
+    all_operations += operations;
+    if (entry.at("kind") != job.kind) continue;
+    kind_seconds += seconds;
+    kind_operations += operations;
+  }
+  if (kind_operations > 0) return job.gigaoperations * kind_seconds / kind_operations;
+  if (all_operations > 0) return job.gigaoperations * all_seconds / all_operations;
+  return job.gigaoperations / kGuessedSpeed;
+}
+
+std::vector<Motion> generate_answers(const AblationModel& model,
+                                     const generator::SamplingOptions& sampling,
+                                     const std::vector<evaluation::LabelPrompt>& prompts,
+                                     const std::vector<int>& groups,
+                                     const training::GeneratorData& data,
+                                     const std::vector<db::TrainingClip>& train,
+                                     const Monitor& monitor) {
+  std::map<std::string, nn::ModelStage> stages;
+  for (const auto& [stage, file] : model.files) {
+    if (stage != "text") stages.emplace(stage, nn::load_stage(file, stage));
+  }
+  const pipeline::Generator generator(stages);
+  std::vector<Motion> motions;
+  for (size_t i = 0; i < prompts.size(); ++i) {
+    if (monitor.stop_requested()) throw Interrupted("the ablation was stopped in a trial");
+    const evaluation::LabelPrompt& prompt = prompts[i];
+    const at::Tensor query = generator.retriever().encode_text({prompt.text}).query[0];
+    const at::Tensor similarity = data.motion.matmul(query);
+    const at::Tensor order = torch::argsort(similarity, 0, /*descending=*/true);
+    std::vector<pipeline::RetrievedMotion> hits;
+    std::set<int> taken = {groups[i]};
+    for (int64_t rank = 0;
+         rank < order.size(0) && static_cast<int64_t>(hits.size()) < generator.max_hits(); ++rank) {
+      const auto clip = order[rank].item<int64_t>();
+      const training::TokenClip& found = data.train.clips[static_cast<size_t>(clip)];
+      if (!taken.insert(found.group).second) continue;
+      pipeline::RetrievedMotion hit;
+      hit.clip_id = clip;
+      hit.motion = row_of(data.motion, clip);
+      hit.text = row_of(data.motion_text, clip);
+      hit.similarity = similarity[clip].item<double>();
+      hit.caption_similarity = data.motion_text[clip].dot(query).item<double>();
+      if (static_cast<int64_t>(hits.size()) < generator.sequence_hits()) {
+        hit.poses = motion::recover_motion(train[found.source].features, humanml_skeleton());
+      }
+      hits.push_back(std::move(hit));
+    }
+    pipeline::GenerateOptions options;
+    options.seconds = prompt.frames / humanml_skeleton().fps;
+    options.seed = prompt.seed;
+    options.sampling = sampling;
+    options.follow = 0;  // what the networks make, not what a retrieved motion gives
+    motions.push_back(generator.generate(prompt.text, hits, options).motion);
+    monitor.report(
+        {"answer prompts", static_cast<double>(i + 1), static_cast<double>(prompts.size()), ""});
+  }
+  return motions;
+}
+
+void run_ablation(const AblationPlan& plan, const training::TrainingSplits& clips,
+                  const AblationExam& exam, AblationClock& clock, const Monitor& monitor) {
+  using Clock = std::chrono::steady_clock;
+  training::GeneratorDataCache prepared;
+  const PlanProgress progress(plan, clock, monitor);
+  for (size_t number = 0; number < plan.jobs.size(); ++number) {
+    const AblationJob& job = plan.jobs[number];
+    if (fs::exists(job.file)) continue;
+    if (monitor.stop_requested()) {
+      throw Interrupted(
+          fmt::format("the ablation stopped before job {} of {}; the same command "
+                      "goes on",
+                      number + 1, plan.jobs.size()));
+    }
+    progress.report(number, 0, "");
+    fs::create_directories(fs::path(job.file).parent_path());
+    const auto start = Clock::now();
+    const Monitor job_monitor = progress.of_job(number);
+    if (job.kind == "trial") {
+      const AblationTrial& trial = plan.trials[job.item];
+      const AblationModel& model = plan.models[trial.model];
+      const training::GeneratorData& data = prepared.get(
+          model.files.at("tokenizer"), model.files.at("retriever"), clips, job_monitor);
+      const auto motions = generate_answers(model, trial.sampling, exam.prompts(), exam.groups(),
+                                            data, clips.train, job_monitor);
+      write_file_atomically(trial.file,
+                            trial_document(plan, trial, exam.grade(motions)).dump(1) + "\n");
+    } else {
+      const AblationModel& model = plan.models[job.item];
+      const training::StageFile file = [&](const std::string& stage) {
+        return model.files.at(stage);
+      };
+      training::train_stage(model.recipe, job.kind, file, clips, prepared, job_monitor);
+    }
+    clock.note(job, std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  progress.report(plan.jobs.size(), 0, "");
+}
+
+}  // namespace remomask::lab

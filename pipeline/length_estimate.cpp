@@ -1,0 +1,69 @@
+#include "pipeline/length_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+#include "generator/ssta.h"
+#include "remomask/error.h"
+
+namespace remomask::pipeline {
+
+namespace {
+
+constexpr int64_t kLeastTokens = 5;  // 1 s
+constexpr double kSimilarityScale = 0.05, kTokenSeconds = 0.2;
+constexpr uint64_t kLengthStream = 0x6c656e67;
+
+}  // namespace
+
+LengthRule parse_length_rule(const std::string& name) {
+  if (name == "evidence") return LengthRule::evidence;
+  if (name == "likely") return LengthRule::likely;
+  if (name == "sample") return LengthRule::sample;
+  throw Error("there is no rule for lengths '" + name + "'; use evidence, likely or sample");
+}
+
+std::vector<double> length_distribution(const std::vector<LengthNeighbour>& neighbours) {
+  std::vector<double> result(generator::kLongestTokenMap + 1, 0);
+  double best = -1;
+  for (const auto& neighbour : neighbours) {
+    if (neighbour.frames > 0) best = std::max(best, neighbour.similarity);
+  }
+  for (const auto& neighbour : neighbours) {
+    if (neighbour.frames <= 0) continue;
+    const double weight = std::exp((neighbour.similarity - best) / kSimilarityScale);
+    const int64_t tokens =
+        std::clamp<int64_t>((neighbour.frames + 2) / 4, kLeastTokens, generator::kLongestTokenMap);
+    for (int64_t offset = -2; offset <= 2; ++offset) {
+      const int64_t length = tokens + offset;
+      if (length < kLeastTokens || length > generator::kLongestTokenMap) continue;
+      result[static_cast<size_t>(length)] += weight * static_cast<double>(3 - std::abs(offset));
+    }
+  }
+  double sum = 0;
+  for (const double value : result) sum += value;
+  if (sum == 0) std::fill(result.begin() + kLeastTokens, result.end(), 1.0);
+  if (sum == 0) sum = static_cast<double>(generator::kLongestTokenMap + 1 - kLeastTokens);
+  for (double& value : result) value /= sum;
+  return result;
+}
+
+double estimate_seconds(const std::vector<double>& distribution, LengthRule rule, uint64_t seed) {
+  if (rule == LengthRule::evidence) {
+    throw Error("the length of the evidence is not that of a distribution");
+  }
+  auto chosen = std::max_element(distribution.begin(), distribution.end());
+  if (rule == LengthRule::sample) {
+    double left = CounterRandom(seed, kLengthStream).uniform_at(0);
+    auto place = distribution.begin();
+    for (; place != distribution.end(); ++place) {
+      if (*place > 0) chosen = place;
+      left -= *place;
+      if (left < 0) break;
+    }
+  }
+  return kTokenSeconds * static_cast<double>(chosen - distribution.begin());
+}
+
+}  // namespace remomask::pipeline

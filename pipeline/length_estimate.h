@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace remomask::pipeline {
+
+/// How long a motion becomes of which no length was asked for.
+enum class LengthRule {
+  evidence,  ///< the median of the retrieved motions that it is made from
+  likely,    ///< the likeliest length of the distribution
+  sample,    ///< a length drawn from it, by the seed
+};
+
+/// Throws Error for another name than "evidence", "likely" and "sample".
+LengthRule parse_length_rule(const std::string& name);
+
+/// A clip near to a sentence.
+struct LengthNeighbour {
+  double similarity = 0;  ///< cosine of the sentence and the clip
+  int frames = 0;         ///< at 20 fps; 0: unknown, passed over
+};
+
+/// Neighbours that the distribution is made from.
+constexpr int kLengthNeighbours = 32;
+
+/// Probabilities of the lengths 0 .. 49 in token frames (0.2 s), estimated by
+/// neighbours without training: each counts exp((similarity - the best one's) /
+/// 0.05) and spreads it over its own length and two on either side by a
+/// triangular kernel. Lengths below 1 s are impossible, longer clips than 9.8 s count as 9.8
+/// s. Without neighbours of known length all possible lengths are equally likely.
+std::vector<double> length_distribution(const std::vector<LengthNeighbour>& neighbours);
+
+/// Seconds by the rule `likely` (the shortest of equally likely ones) or `sample`.
+double estimate_seconds(const std::vector<double>& distribution, LengthRule rule, uint64_t seed);
+
+}  // namespace remomask::pipeline

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "search/query.h"
+#include "search/search_answer.h"
+#include "search/search_scene.h"
+
+namespace remomask::search {
+
+/// The hits of a query: the nearest clips that the scene allows, one a group and
+/// above the limits as the query says.
+SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
+                          const index::LinearQuery& vectors);
+
+}  // namespace remomask::search

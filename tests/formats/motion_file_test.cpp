@@ -1,0 +1,206 @@
+#include "formats/motion_file.h"
+#include "motion/vector.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/file.h"
+#include "formats/axis_detection.h"
+#include "formats/inverse_kinematics.h"
+#include "formats/npy.h"
+#include "motion/canonical.h"
+#include "motion/features.h"
+#include "remomask/error.h"
+#include "tests/motion/support.h"
+
+namespace remomask {
+
+using testing_support::largest_difference;
+using testing_support::make_walker;
+using testing_support::moved;
+using testing_support::temporary_folder;
+
+namespace {
+
+std::string temporary(const std::string& name) { return temporary_folder() + "/" + name; }
+
+Motion canonical_walker(int frames) {
+  return motion::canonicalize(make_walker(frames, [](int t) { return 0.02 * t; }),
+                              humanml_skeleton());
+}
+
+/// Positions as a file of another program would hold them.
+Motion disguised(const Motion& motion, double metres_per_unit, char up_axis) {
+  Motion result = motion;
+  for (int t = 0; t < motion.frames; ++t) {
+    for (int j = 0; j < motion.joints; ++j) {
+      const Vec3 p = joint_position(motion, t, j) / metres_per_unit;
+      set_joint_position(result, t, j,
+                         up_axis == 'Z'   ? Vec3(p.x(), -p.z(), p.y())
+                         : up_axis == 'X' ? Vec3(p.y(), -p.x(), p.z())
+                                          : p);
+    }
+  }
+  return result;
+}
+
+void write_joints(const std::string& path, const Motion& motion) {
+  write_file_atomically(
+      path, formats::format_npy({{static_cast<size_t>(motion.frames), 22, 3}, motion.positions}));
+}
+
+}  // namespace
+
+TEST(MotionFile, NpyAndBvhRoundTrips) {
+  const Motion motion = canonical_walker(60);
+  formats::save_motion_file(temporary("a.npy"), motion);
+  EXPECT_LT(largest_difference(formats::load_motion_file(temporary("a.npy")).motion, motion), 2e-6);
+  formats::save_motion_file(temporary("a.bvh"), motion);
+  const formats::LoadedMotion loaded = formats::load_motion_file(temporary("a.bvh"));
+  EXPECT_LT(largest_difference(loaded.motion, motion), 1e-3);
+  EXPECT_EQ(loaded.skeleton_map, "remomask");
+  EXPECT_EQ(loaded.up_axis, 'Y');
+  EXPECT_DOUBLE_EQ(loaded.metres_per_unit, 0.01);
+  EXPECT_NEAR(loaded.source_fps, 20, 1e-9);
+  EXPECT_EQ(loaded.source_frames, 60);
+  EXPECT_FALSE(std::filesystem::exists(temporary("a.npy.json")));
+}
+
+TEST(MotionFile, FeaturesAreRead) {
+  const Motion motion = canonical_walker(60);
+  const motion::Features f = motion::extract_features_all_frames(motion, humanml_skeleton(),
+                                                                 motion::FeatureMode::official);
+  write_file_atomically(temporary("f.npy"), formats::format_npy({{60, 263}, f.values}));
+  EXPECT_LT(largest_difference(formats::load_motion_file(temporary("f.npy")).motion, motion), 2e-5);
+}
+
+TEST(MotionFile, MetadataLiesBesideTheFile) {
+  formats::save_motion_file(temporary("m.bvh"), canonical_walker(4),
+                            {{"prompt", "a \"tall\" person\nwaves"}, {"seed", "7"}});
+  const auto fields = nlohmann::json::parse(read_file(temporary("m.bvh.json")));
+  EXPECT_EQ(fields["prompt"], "a \"tall\" person\nwaves");
+  EXPECT_EQ(fields["seed"], "7");
+}
+
+TEST(MotionFile, FindsUnitAndUpAxis) {
+  const Motion motion = canonical_walker(60);
+  for (const double unit : {1.0, 0.01, 0.001, 0.0254, 0.056444}) {
+    for (const char axis : {'X', 'Y', 'Z'}) {
+      write_joints(temporary("d.npy"), disguised(motion, unit, axis));
+      const formats::LoadedMotion loaded = formats::load_motion_file(temporary("d.npy"));
+      EXPECT_EQ(loaded.up_axis, axis);
+      EXPECT_DOUBLE_EQ(loaded.metres_per_unit, unit);
+      EXPECT_LT(largest_difference(loaded.motion, motion), 1e-5) << unit << axis;
+    }
+  }
+}
+
+TEST(MotionFile, ChoicesOfTheCallerWin) {
+  const Motion motion = canonical_walker(60);
+  write_joints(temporary("o.npy"), disguised(motion, 0.01, 'Y'));
+  formats::MotionFileOptions options;
+  options.up_axis = 'Z';
+  options.metres_per_unit = 0.02;
+  options.skip_frames = 5;
+  const formats::LoadedMotion loaded = formats::load_motion_file(temporary("o.npy"), options);
+  EXPECT_EQ(loaded.up_axis, 'Z');
+  EXPECT_DOUBLE_EQ(loaded.metres_per_unit, 0.02);
+  EXPECT_EQ(loaded.motion.frames, 55);
+  EXPECT_EQ(loaded.source_frames, 60);
+}
+
+TEST(MotionFile, ACrawlerDoesNotTurnTheWorldOver) {
+  const Motion walker = make_walker(60);
+  Motion crawler = walker;
+  for (size_t i = 0; i < crawler.positions.size(); i += 3) {  // lies on the belly, head to +Z
+    const float y = walker.positions[i + 1], z = walker.positions[i + 2];
+    crawler.positions[i + 1] = 0.3f - z;
+    crawler.positions[i + 2] = y;
+  }
+  const Motion standing = slice(walker, 0, 1);
+  EXPECT_EQ(formats::detect_up_axis(crawler, &standing), 'Y');
+  EXPECT_EQ(formats::detect_up_axis(walker, nullptr), 'Y');
+}
+
+TEST(MotionFile, ResamplesOtherFrameRates) {
+  formats::Bvh bvh = formats::motion_to_bvh(canonical_walker(61));
+  bvh.frame_time = 1.0 / 120;
+  write_file_atomically(temporary("fast.bvh"), formats::format_bvh(bvh));
+  const formats::LoadedMotion loaded = formats::load_motion_file(temporary("fast.bvh"));
+  EXPECT_EQ(loaded.motion.frames, 11);
+  EXPECT_NEAR(loaded.source_fps, 120, 0.1);
+}
+
+TEST(MotionFile, TakesAMapFileOfTheUser) {
+  formats::Bvh bvh = formats::motion_to_bvh(canonical_walker(20));
+  nlohmann::json map;
+  const formats::Bvh original = bvh;
+  for (formats::BvhJoint& joint : bvh.joints) joint.name = "my " + joint.name;
+  const char* names[] = {"Hips",     "LeftUpLeg", "RightUpLeg", "Spine",        "LeftLeg",
+                         "RightLeg", "Spine1",    "LeftFoot",   "RightFoot",    "Spine2",
+                         "LeftToe",  "RightToe",  "Neck",       "LeftShoulder", "RightShoulder",
+                         "Head",     "LeftArm",   "RightArm",   "LeftForeArm",  "RightForeArm",
+                         "LeftHand", "RightHand"};
+  for (int j = 0; j < 22; ++j) {
+    map[humanml_skeleton().joint_names[j]] = std::string("my ") + names[j];
+  }
+  write_file_atomically(temporary("mine.bvh"), formats::format_bvh(bvh));
+  write_file_atomically(temporary("mine.json"), map.dump());
+  EXPECT_THROW(formats::load_motion_file(temporary("mine.bvh")), FileError);
+  formats::MotionFileOptions options;
+  options.skeleton_map = temporary("mine.json");
+  const formats::LoadedMotion loaded = formats::load_motion_file(temporary("mine.bvh"), options);
+  EXPECT_EQ(loaded.skeleton_map, "mine");
+  EXPECT_LT(largest_difference(loaded.motion, canonical_walker(20)), 1e-3);
+  options.skeleton_map = "bandai";  // shipped, but of another skeleton
+  EXPECT_THROW(formats::load_motion_file(temporary("mine.bvh"), options), FileError);
+  options.skeleton_map = "no such map";
+  EXPECT_THROW(formats::load_motion_file(temporary("mine.bvh"), options), FileError);
+}
+
+TEST(MotionFile, RefusesUnusableFilesAndOptions) {
+  const Motion motion = canonical_walker(6);
+  EXPECT_THROW(formats::save_motion_file(temporary("a.fbx"), motion), FileError);
+  EXPECT_THROW(formats::save_motion_file(temporary("no/such/folder/a.npy"), motion), FileError);
+  EXPECT_THROW(formats::save_motion_file(temporary("a.npy"), Motion(3, 21)), Error);
+  EXPECT_THROW(formats::load_motion_file(temporary("absent.bvh")), FileError);
+  EXPECT_THROW(formats::load_motion_file(temporary("a.fbx")), FileError);
+  write_file_atomically(temporary("shape.npy"),
+                        formats::format_npy({{2, 5}, std::vector<float>(10)}));
+  EXPECT_THROW(formats::load_motion_file(temporary("shape.npy")), FileError);
+  Motion broken = motion;
+  broken.at(2, 2)[1] = NAN;
+  write_joints(temporary("nan.npy"), broken);
+  EXPECT_THROW(formats::load_motion_file(temporary("nan.npy")), FileError);
+  formats::save_motion_file(temporary("b.npy"), motion);
+  formats::MotionFileOptions options;
+  options.skip_frames = 6;
+  EXPECT_THROW(formats::load_motion_file(temporary("b.npy"), options), FileError);
+  options.skip_frames = -1;
+  EXPECT_THROW(formats::load_motion_file(temporary("b.npy"), options), Error);
+  options.skip_frames = 0;
+  options.up_axis = 'y';
+  EXPECT_THROW(formats::load_motion_file(temporary("b.npy"), options), Error);
+  options.up_axis = 'Y';
+  options.metres_per_unit = 0;
+  EXPECT_THROW(formats::load_motion_file(temporary("b.npy"), options), Error);
+}
+
+TEST(MotionFile, PlaceAndSizeStayWhereCanonicalIsNotAskedFor) {
+  const Motion walk = moved(make_walker(30), 0.8, Vec3(2, 0.5, -3), 1.07);
+  formats::MotionFileOptions as_it_is;
+  as_it_is.canonical = false;
+  formats::save_motion_file(temporary("placed.npy"), walk);
+  EXPECT_EQ(formats::load_motion_file(temporary("placed.npy"), as_it_is).motion.positions,
+            walk.positions);
+  EXPECT_GT(largest_difference(formats::load_motion_file(temporary("placed.npy")).motion, walk), 1);
+  formats::save_motion_file(temporary("placed.bvh"), walk);
+  const Motion back = formats::load_motion_file(temporary("placed.bvh"), as_it_is).motion;
+  EXPECT_LT(largest_difference(back, walk), 1e-4);
+}
+
+}  // namespace remomask

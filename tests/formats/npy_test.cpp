@@ -1,0 +1,91 @@
+#include "formats/npy.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "remomask/error.h"
+
+namespace remomask {
+
+namespace {
+
+template <typename Number>
+std::string npy_file(int version, const std::string& header, const std::vector<Number>& numbers) {
+  std::string content = "\x93NUMPY";
+  content += static_cast<char>(version);
+  content += '\0';
+  const int size_bytes = version == 1 ? 2 : 4;
+  for (int i = 0; i < size_bytes; ++i) {
+    content += static_cast<char>(header.size() >> (8 * i) & 255);
+  }
+  content += header;
+  content.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
+  return content;
+}
+
+std::string header_of(const std::string& type, const std::string& order, const std::string& shape) {
+  return "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': (" + shape + "), }\n";
+}
+
+}  // namespace
+
+TEST(Npy, ReadsTypesVersionsAndOrders) {
+  const std::vector<float> f4 = {1, 2, 3, 4, 5, 6};
+  const std::vector<double> f8 = {1, 2, 3, 4, 5, 6};
+  for (const int version : {1, 2, 3}) {
+    const formats::NpyArray c =
+        formats::parse_npy(npy_file(version, header_of("<f4", "False", "2, 3"), f4), "a");
+    EXPECT_EQ(c.shape, (std::vector<size_t>{2, 3}));
+    EXPECT_EQ(c.values, f4);
+    const formats::NpyArray d =
+        formats::parse_npy(npy_file(version, header_of("<f8", "False", "6,"), f8), "a");
+    EXPECT_EQ(d.shape, (std::vector<size_t>{6}));
+    EXPECT_EQ(d.values, f4);
+  }
+  const formats::NpyArray fortran =
+      formats::parse_npy(npy_file(1, header_of("<f8", "True", "2, 3"), f8), "a");
+  EXPECT_EQ(fortran.values, (std::vector<float>{1, 3, 5, 2, 4, 6}));
+}
+
+TEST(Npy, WrittenFilesReadBack) {
+  for (const std::vector<size_t>& shape : {std::vector<size_t>{6}, {2, 3}, {1, 2, 3}, {0, 22, 3}}) {
+    formats::NpyArray array{shape, {1, 2, 3, 4, 5, 6}};
+    if (shape[0] == 0) array.values.clear();
+    const std::string content = formats::format_npy(array);
+    EXPECT_EQ((content.size() - array.values.size() * 4) % 64, 0u);
+    const formats::NpyArray again = formats::parse_npy(content, "a");
+    EXPECT_EQ(again.shape, array.shape);
+    EXPECT_EQ(again.values, array.values);
+  }
+}
+
+TEST(Npy, RefusesWhatItCannotRead) {
+  const std::vector<float> numbers = {1, 2, 3, 4, 5, 6};
+  const std::string good = npy_file(1, header_of("<f4", "False", "2, 3"), numbers);
+  const std::pair<std::string, const char*> cases[] = {
+      {"", "not a NumPy"},
+      {"hello world", "not a NumPy"},
+      {good.substr(0, 9), "not a NumPy"},
+      {good.substr(0, 30), "cut off"},
+      {good.substr(0, good.size() - 1), "truncated"},
+      {npy_file(9, header_of("<f4", "False", "6"), numbers), "format 9"},
+      {npy_file(1, header_of(">f4", "False", "6"), numbers), "big-endian"},
+      {npy_file(1, header_of("<i8", "False", "3"), numbers), "float32"},
+      {npy_file(1, header_of("|O", "False", "3"), numbers), "float32"},
+      {npy_file(1, header_of("<f4", "Maybe", "6"), numbers), "fortran_order"},
+      {npy_file(1, header_of("<f4", "False", "99999999999, 99999999999"), numbers), "truncated"},
+      {npy_file(1, header_of("<f4", "False", "9999999999999999999999"), numbers), "absurd"},
+      {npy_file(1, std::string("{}"), numbers), "descr"},
+  };
+  for (const auto& [content, message] : cases) {
+    try {
+      formats::parse_npy(content, "broken.npy");
+      ADD_FAILURE() << message << ": was accepted";
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace remomask

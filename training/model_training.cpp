@@ -1,0 +1,103 @@
+#include "training/model_training.h"
+
+#include <filesystem>
+
+#include "nn/model_file.h"
+#include "pipeline/stage_gate.h"
+#include "remomask/error.h"
+
+namespace remomask::training {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename Options>
+Options with_checkpoint(Options options, const std::string& path) {
+  options.trainer.checkpoint_path = path;
+  return options;
+}
+
+nn::ModelStage trained_text(const TrainingRecipe& recipe, const std::string& checkpoint,
+                            const TrainingSplits& clips, const Monitor& monitor) {
+  std::vector<std::string> captions;
+  for (const db::TrainingClip& clip : clips.train) {
+    captions.insert(captions.end(), clip.captions.begin(), clip.captions.end());
+  }
+  captions.insert(captions.end(), clips.more_captions.begin(), clips.more_captions.end());
+  return train_text_encoder(captions, recipe.text,
+                            with_checkpoint(recipe.text_training, checkpoint), monitor);
+}
+
+nn::ModelStage trained_retriever(const TrainingRecipe& recipe, const std::string& checkpoint,
+                                 const StageFile& file, const TrainingSplits& clips,
+                                 const Monitor& monitor) {
+  std::optional<nn::ModelStage> text;
+  if (fs::exists(file("text"))) text = nn::load_stage(file("text"), "text");
+  return train_retriever(clips.train, clips.val, text, recipe.model.retriever,
+                         with_checkpoint(recipe.retriever_training, checkpoint), monitor);
+}
+
+}  // namespace
+
+const GeneratorData& GeneratorDataCache::get(const std::string& tokenizer_file,
+                                             const std::string& retriever_file,
+                                             const TrainingSplits& clips, const Monitor& monitor) {
+  const std::string files = tokenizer_file + "\n" + retriever_file;
+  if (!data_ || files_ != files) {
+    const tokenizer::Tokenizer tokenizer(nn::load_stage(tokenizer_file, "tokenizer"));
+    const retriever::Retriever retriever(nn::load_stage(retriever_file, "retriever"));
+    data_ = prepare_generator_data(clips.train, clips.val, tokenizer, retriever, monitor);
+    files_ = files;
+  }
+  return *data_;
+}
+
+void train_stage(const TrainingRecipe& recipe, const std::string& stage, const StageFile& file,
+                 const TrainingSplits& clips, GeneratorDataCache& prepared,
+                 const Monitor& monitor) {
+  const std::string checkpoint = file(stage) + ".checkpoint";
+  const auto data = [&]() -> const GeneratorData& {
+    return prepared.get(file("tokenizer"), file("retriever"), clips, monitor);
+  };
+  nn::ModelStage result;
+  if (stage == "text") {
+    result = trained_text(recipe, checkpoint, clips, monitor);
+  } else if (stage == "retriever") {
+    result = trained_retriever(recipe, checkpoint, file, clips, monitor);
+  } else if (stage == "tokenizer") {
+    result = train_tokenizer(clips.train, clips.val, recipe.model.tokenizer,
+                             with_checkpoint(recipe.tokenizer_training, checkpoint), monitor);
+  } else if (stage == "masked") {
+    result = train_masked(recipe.model.masked, data(),
+                          with_checkpoint(recipe.masked_training, checkpoint), monitor);
+  } else if (stage == "residual") {
+    result = train_residual(recipe.model.residual, data(),
+                            with_checkpoint(recipe.residual_training, checkpoint), monitor);
+  } else {
+    throw Error("there is no stage \"" + stage + "\" to train");
+  }
+  const nlohmann::json description = stage_description(recipe, stage);
+  result.config["recipe"] = {{"trainer", description["trainer"]},
+                             {"training", description["training"]}};
+  nn::save_model(file(stage), {result});
+  fs::remove(checkpoint);
+}
+
+void join_stages(const TrainingRecipe& recipe, const StageFile& file, const TrainingSplits& clips,
+                 const std::string& model_path, const Monitor& monitor) {
+  std::vector<nn::ModelStage> stages;
+  for (const std::string& name : recipe_stages(recipe)) {
+    if (name == "text") continue;
+    nn::ModelStage stage = nn::load_stage(file(name), name);
+    if (name == "masked" && generator::masked_config(stage.config).max_hits > 0) {
+      const retriever::Retriever retriever(nn::load_stage(file("retriever"), "retriever"));
+      const auto gate = training::measure_gate(retriever, clips.train, clips.val, monitor);
+      if (gate) pipeline::set_stage_gate(stage, *gate);
+    }
+    stages.push_back(std::move(stage));
+  }
+  nn::save_model(model_path, stages, /*half=*/true);
+}
+
+}  // namespace remomask::training
