@@ -70,7 +70,7 @@ TEST(FitFreeJoints, AJointHeldFromAllSidesStays) {
   std::vector<Vec3> target = pose_of(walk, 9);
   std::vector<bool> free(22, false);
   for (const int j : {9, 12, 15}) free[j] = true;  // 6, 13 and 14 stay
-  fit_free_joints(pose, target, free, lengths, skeleton);
+  kinematics::fit_free_joints(pose, target, free, lengths, skeleton);
   EXPECT_LT((pose[9] - before[9]).norm(), 1e-3);
   EXPECT_LT(worst_bone(pose, lengths), 1e-5);
 }

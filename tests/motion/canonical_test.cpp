@@ -85,7 +85,7 @@ TEST(Resample, InterpolatesInTime) {
 TEST(Slice, TakesFramesAndRefusesOthers) {
   const Motion motion = make_walker(10);
   EXPECT_EQ(slice(motion, 3, 7).frames, 4);
-  EXPECT_EQ(slice(motion, 3, 7).position(0, 5), joint_position(motion, 3, 5));
+  EXPECT_EQ(joint_position(slice(motion, 3, 7), 0, 5), joint_position(motion, 3, 5));
   EXPECT_THROW(slice(motion, 3, 11), Error);
   EXPECT_THROW(slice(motion, -1, 2), Error);
 }
