@@ -14,8 +14,8 @@
 #include "base/file.h"
 #include "bench/long_walk.h"
 #include "bench/machine_peak.h"
-#include "formats/motion_file.h"
 #include "remomask/error.h"
+#include "remomask/motion_file.h"
 
 namespace remomask {
 namespace {
@@ -29,7 +29,7 @@ class TemporaryBvh {
     std::string folder = (std::filesystem::temp_directory_path() / "bvh_bench_XXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) throw Error("cannot make a folder like " + folder);
     folder_ = folder;
-    formats::save_motion_file(path(), long_walk(kFrames));
+    save_motion(path(), long_walk(kFrames));
     text_ = read_file(path());
   }
   ~TemporaryBvh() {
@@ -90,7 +90,7 @@ void load_bvh(benchmark::State& state) {
   omp_set_num_threads(1);
   const std::string path = walk_file().path();
   static const double floor_seconds = least_seconds_of_from_chars();
-  for (auto _ : state) benchmark::DoNotOptimize(formats::load_motion_file(path));
+  for (auto _ : state) benchmark::DoNotOptimize(load_motion(path));
   count_text(state);
   report_floor(state, floor_seconds);
 }

@@ -72,7 +72,7 @@ struct GenerationWork {
 };
 
 GenerationWork generation_work(const BenchModel& model, const pipeline::Generator& generator,
-                               const generator::SamplingOptions& options) {
+                               const SamplingOptions& options) {
   const auto masked = generator::masked_config(model.stages.at("masked").config);
   const tokenizer::TokenizerConfig& tokenizer = generator.tokenizer().config();
   const ConditionSize condition{generator.retriever().encode_text({kPrompt}).states.size(1),
@@ -94,10 +94,10 @@ void time_generation(benchmark::State& state) {
   nn::set_compute_threads(static_cast<int>(state.range(0)));
   state.SetLabel(model.label);
   const auto hits = random_hits(generator);
-  pipeline::GenerateOptions options;
+  GenerateOptions options;
   options.seconds = kSeconds;
   const GenerationWork work = generation_work(model, generator, options.sampling);
-  pipeline::GenerationTimes sum;
+  GenerationTimes sum;
   for (auto _ : state) {
     const pipeline::Generated made = generator.generate(kPrompt, hits, options);
     sum.text += made.times.text;

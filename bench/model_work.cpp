@@ -64,9 +64,8 @@ generator::SstaConfig stack_config(const generator::ResidualConfig& config) {
           config.dropout, config.text_width, config.embedding_width, /*retrieval=*/false};
 }
 
-double sample_base_flops(const generator::MaskedConfig& config,
-                         const generator::SamplingOptions& options, const ConditionSize& condition,
-                         int64_t frames) {
+double sample_base_flops(const generator::MaskedConfig& config, const SamplingOptions& options,
+                         const ConditionSize& condition, int64_t frames) {
   const generator::SstaConfig stack = stack_config(config);
   const int64_t tokens = frames * config.rows;
   const auto passes = static_cast<double>(generator::masked_counts(tokens, options.steps).size()) +
@@ -78,8 +77,8 @@ double sample_base_flops(const generator::MaskedConfig& config,
 }
 
 double sample_residual_flops(const generator::ResidualConfig& config,
-                             const generator::SamplingOptions& options,
-                             const ConditionSize& condition, int64_t frames) {
+                             const SamplingOptions& options, const ConditionSize& condition,
+                             int64_t frames) {
   const generator::SstaConfig stack = stack_config(config);
   const auto passes = static_cast<double>(config.levels - 1);
   const double head = 2.0 * static_cast<double>(frames * config.rows * config.width * config.codes);

@@ -27,12 +27,11 @@ generator::SstaConfig stack_config(const generator::MaskedConfig& config);
 generator::SstaConfig stack_config(const generator::ResidualConfig& config);
 
 /// sample_base() and sample_residual() of `frames` token frames.
-double sample_base_flops(const generator::MaskedConfig& config,
-                         const generator::SamplingOptions& options, const ConditionSize& condition,
-                         int64_t frames);
+double sample_base_flops(const generator::MaskedConfig& config, const SamplingOptions& options,
+                         const ConditionSize& condition, int64_t frames);
 double sample_residual_flops(const generator::ResidualConfig& config,
-                             const generator::SamplingOptions& options,
-                             const ConditionSize& condition, int64_t frames);
+                             const SamplingOptions& options, const ConditionSize& condition,
+                             int64_t frames);
 
 /// Tokenizer::encode() and decode() of 4 `frames` poses. Throws Error for a
 /// tokenizer of several time scales.

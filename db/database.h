@@ -8,30 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "remomask/clip.h"
 #include "remomask/motion.h"
 
 namespace remomask::db {
 
-/// One motion of at most 200 frames. Long files become several clips that
-/// overlap, with the same `source_file`.
-struct Clip {
-  int64_t id = 0;           ///< given by the database
-  std::string name;         ///< unique, for example "01_01#2"
-  std::string source;       ///< data set, for example "bandai2"
-  std::string source_file;  ///< file stem it was cut from
-  int start_frame = 0;      ///< of this window in the source at 20 fps
-  std::string split;        ///< "train", "val", "test" or "none"
-  std::string licence;
-  std::string content_hash;  ///< of the canonical positions; unique
-  std::string group;         ///< clips of one group are the same motion: windows of a
-                             ///< file, mirror twins, the trial in another skeleton
-  bool mirrored = false;     ///< a stored mirror copy (HumanML3D "M...")
-  std::string skeleton = "humanml3d";
-  int frames = 0;    ///< positions, 20 fps
-  double speed = 0;  ///< mean of the root over the ground, m/s; given by the database
-  std::vector<std::string> captions;
+/// A clip as the database stores it.
+struct Clip : ClipInfo {
   nlohmann::json labels = nlohmann::json::object();
-  std::vector<std::string> tags;  ///< of the user, ascending
 };
 
 /// Captions that one clip can have.

@@ -283,13 +283,16 @@ Clip Database::clip(int64_t id) const {
 
 Motion Database::motion(int64_t id) const {
   SqliteStatement row(impl_->connection,
-                      "SELECT frames, joints, positions FROM motion WHERE clip_id = ?");
+                      "SELECT motion.frames, joints, positions, skeleton FROM motion "
+                      "JOIN clip ON clip.id = clip_id WHERE clip_id = ?");
   row.bind(1, id);
   if (!row.step()) throw Error(path() + ": there is no clip number " + std::to_string(id));
   Motion motion;
   motion.frames = static_cast<int>(row.integer(0));
   motion.joints = static_cast<int>(row.integer(1));
   motion.positions = row.floats(2);
+  motion.skeleton = row.text(3);
+  motion.fps = skeleton_named(motion.skeleton).fps;
   if (!is_whole_motion(motion)) {
     throw Error(path() + ": the motion of clip number " + std::to_string(id) +
                 " is cut off: the database is damaged; restore a backup");

@@ -120,7 +120,7 @@ class ReportBuilder {
 
   MotionFigures figures(const MotionTable& table, const std::vector<bool>& members) const {
     MotionFigures result;
-    std::vector<pipeline::PhysicalMetrics> physical;
+    std::vector<PhysicalMetrics> physical;
     std::vector<int> judged;
     for (const auto& motions : table) {
       for (size_t i = 0; i < motions.size(); ++i) {
@@ -131,7 +131,7 @@ class ReportBuilder {
       }
     }
     result.content = content_accuracy(judged, {});
-    result.physical = summarise_physical(physical);
+    result.physical = pipeline::summarise_physical(physical);
     result.captions = pair_figures(table, members, DistinctBy::captions);
     result.labels = pair_figures(table, members, DistinctBy::labels);
     return result;

@@ -128,7 +128,7 @@ JudgeGallery::JudgeGallery(const db::Database& database, const MotionJudge& judg
   const std::vector<db::Clip> clips = database.clips();
   std::map<int64_t, const db::Clip*> by_id;
   for (const db::Clip& clip : clips) by_id.emplace(clip.id, &clip);
-  search::ClipFilter filter;
+  ClipFilter filter;
   filter.splits = splits;
   const auto& known = judge.clip_ids();
   for (const int64_t id : search::matching_clips(clips, filter)) {

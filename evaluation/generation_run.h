@@ -38,7 +38,7 @@ struct JudgedMotion {
   double distance = 0;                        ///< to the nearest clip, in the judge's space
   bool right = false;                         ///< nearest_content is the prompt's
   std::string shown_side;  ///< "left" or "right"; "" for none, or where none is asked
-  pipeline::PhysicalMetrics physical;
+  PhysicalMetrics physical;
   std::vector<float> embedding;  ///< in the evaluator's space; empty when not finite
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedMotion, nearest_clip, nearest_content, distance, right,

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "formats/motion_file.h"
 #include "pipeline/motion_generator.h"
+#include "remomask/motion_file.h"
 #include "search/motion_search.h"
 
 int main(int argc, char** argv) {
@@ -21,11 +21,11 @@ int main(int argc, char** argv) {
     const remomask::search::MotionSearch search(argv[1], argv[2]);
     const remomask::db::Database database(argv[2], remomask::db::OpenMode::read_only);
 
-    remomask::search::SearchQuery query;
+    remomask::SearchQuery query;
     query.text = sentence;
     query.k = static_cast<int>(generator.max_hits());
     std::vector<remomask::pipeline::RetrievedMotion> retrieved;
-    for (const remomask::search::MotionHit& hit : search.search(query).hits) {
+    for (const remomask::MotionHit& hit : search.search(query).hits) {
       const auto vectors = database.embedding(generator.retriever().hash(), hit.clip.id);
       if (!vectors || vectors->text.empty()) continue;
       remomask::pipeline::RetrievedMotion motion;
@@ -41,11 +41,11 @@ int main(int argc, char** argv) {
       std::printf("from: %s  %.3f\n", hit.clip.name.c_str(), hit.similarity);
     }
 
-    remomask::pipeline::GenerateOptions options;
+    remomask::GenerateOptions options;
     options.seconds = 2;
     options.seed = 1;
     const remomask::pipeline::Generated made = generator.generate(sentence, retrieved, options);
-    remomask::formats::save_motion_file(argv[4], made.motion, {{"prompt", sentence}});
+    remomask::save_motion(argv[4], made.motion, {{"prompt", sentence}});
     std::printf("%d frames in %s\n", made.motion.frames, argv[4]);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

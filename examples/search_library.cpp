@@ -12,24 +12,24 @@ int main(int argc, char** argv) {
   }
   try {
     const remomask::search::MotionSearch search(argv[1], argv[2]);
-    remomask::search::SearchQuery query;
+    remomask::SearchQuery query;
     query.text = argv[3];
     query.k = 3;
     query.filter.min_seconds = 2;
-    const remomask::search::SearchAnswer answer = search.search(query);
-    for (const remomask::search::MotionHit& hit : answer.hits) {
+    const remomask::SearchAnswer answer = search.search(query);
+    for (const remomask::MotionHit& hit : answer.hits) {
       std::printf("%d. %s  %.3f\n", hit.rank, hit.clip.name.c_str(), hit.similarity);
     }
     if (answer.hits.empty()) return 0;
 
-    remomask::search::SearchQuery like;
+    remomask::SearchQuery like;
     like.like_clip = answer.hits[0].clip.name;
     like.k = 3;
-    for (const remomask::search::CaptionHit& hit : search.captions_for(like)) {
+    for (const remomask::CaptionHit& hit : search.captions_for(like)) {
       std::printf("described by: %s  %.3f\n", hit.caption.c_str(), hit.similarity);
     }
     like.parts = {"arms"};
-    for (const remomask::search::MotionHit& hit : search.search(like).hits) {
+    for (const remomask::MotionHit& hit : search.search(like).hits) {
       std::printf("arms like it: %s  %.3f\n", hit.clip.name.c_str(), hit.similarity);
     }
   } catch (const std::exception& error) {

@@ -3,15 +3,15 @@
 #include <filesystem>
 
 #include "exchange/motion_source.h"
-#include "formats/motion_file.h"
 #include "remomask/error.h"
+#include "remomask/motion_file.h"
 
 namespace remomask::exchange {
 
 namespace {
 
 std::vector<PreparedClip> prepare_file(const std::string& path, const AddOptions& options) {
-  formats::MotionFileOptions reading;
+  MotionFileOptions reading;
   reading.skeleton_map = options.skeleton_map;
   db::Clip clip;
   clip.name = std::filesystem::path(path).stem().string();
@@ -23,7 +23,7 @@ std::vector<PreparedClip> prepare_file(const std::string& path, const AddOptions
   clip.captions = options.captions;
   clip.labels = options.labels;
   clip.tags = options.tags;
-  const formats::LoadedMotion loaded = formats::load_motion_file(path, reading);
+  const LoadedMotion loaded = load_motion(path, reading);
   return cut_into_clips(clip, loaded.motion, humanml_skeleton(), options.windows);
 }
 

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "base/file.h"
-#include "formats/motion_file.h"
 #include "remomask/error.h"
+#include "remomask/motion_file.h"
 
 namespace remomask::exchange {
 
@@ -75,8 +75,7 @@ void export_clips(const db::Database& database, const std::vector<int64_t>& ids,
     }
     const db::Clip clip = database.clip(ids[i]);
     const std::string stem = names.choose(clip.name);
-    formats::save_motion_file((fs::path(folder) / (stem + extension)).string(),
-                              database.motion(ids[i]));
+    save_motion((fs::path(folder) / (stem + extension)).string(), database.motion(ids[i]));
     captions += captions_line(clip, stem);
     monitor.report({"export " + database.path(), static_cast<double>(i + 1),
                     static_cast<double>(ids.size()), ""});

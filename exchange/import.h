@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "db/database.h"
+#include "remomask/library.h"
 #include "remomask/progress.h"
 
 namespace remomask::exchange {
@@ -19,10 +20,6 @@ struct ImportOptions {
   int max_frames = 196;
   int window_overlap = 40;  ///< frames shared by neighbouring windows of a long clip
   int threads = 1;
-};
-
-struct RejectedFile {
-  std::string file, reason;
 };
 
 struct ImportReport {

@@ -7,10 +7,10 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "formats/motion_file.h"
 #include "formats/npy.h"
 #include "formats/skeleton_map.h"
 #include "remomask/error.h"
+#include "remomask/motion_file.h"
 
 namespace remomask::exchange {
 
@@ -35,8 +35,8 @@ class ReadingLabels {
   ReadingLabels(const std::string& captions_path, const CaptionEntry& entry)
       : path_(captions_path), entry_(entry) {}
 
-  formats::MotionFileOptions options() const {
-    formats::MotionFileOptions options;
+  MotionFileOptions options() const {
+    MotionFileOptions options;
     if (const auto* value = label("skip_frames")) {
       if (!value->is_number_integer() || value->get<int64_t>() < 0) fail("skip_frames", "a count");
       options.skip_frames = value->get<int>();
@@ -85,20 +85,20 @@ bool is_shipped_map(const std::string& name) {
 /// The name of a map in the labels is a hint: a map that we do not have, or that
 /// does not fit, is no reason to refuse a skeleton that we know by its joints.
 /// (Nor is it ever taken for the path of a file, as a map of the user is.)
-formats::LoadedMotion load_with_hint(const SourceFile& file, formats::MotionFileOptions options,
-                                     std::vector<std::string>& warnings) {
+LoadedMotion load_with_hint(const SourceFile& file, MotionFileOptions options,
+                            std::vector<std::string>& warnings) {
   const std::string hint = options.skeleton_map;
-  if (hint.empty()) return formats::load_motion_file(file.path, options);
+  if (hint.empty()) return load_motion(file.path, options);
   std::string reason = "there is no such map";
   if (is_shipped_map(hint)) {
     try {
-      return formats::load_motion_file(file.path, options);
+      return load_motion(file.path, options);
     } catch (const Error& error) {
       reason = error.what();
     }
   }
   options.skeleton_map.clear();
-  formats::LoadedMotion loaded = formats::load_motion_file(file.path, options);
+  LoadedMotion loaded = load_motion(file.path, options);
   warnings.push_back(file.name + ": skeleton '" + hint + "' of its labels was not used (" + reason +
                      "); read as '" + loaded.skeleton_map + "' by its joint names");
   return loaded;
@@ -106,9 +106,9 @@ formats::LoadedMotion load_with_hint(const SourceFile& file, formats::MotionFile
 
 /// What an export wrote: canonical already, exactly so in npy.
 Motion load_stored_motion(const std::string& path) {
-  formats::MotionFileOptions options;
+  MotionFileOptions options;
   options.up_axis = 'Y';
-  if (fs::path(path).extension() != ".npy") return formats::load_motion_file(path, options).motion;
+  if (fs::path(path).extension() != ".npy") return load_motion(path, options).motion;
   formats::NpyArray array = formats::read_npy(path);
   const auto joints = static_cast<size_t>(humanml_skeleton().joints());
   if (array.shape.size() != 3 || array.shape[1] != joints || array.shape[2] != 3) {
@@ -203,7 +203,7 @@ std::vector<PreparedClip> MotionFolder::prepare(size_t i,
   clip.split = "none";
   clip.licence = options_.licence;
   clip.group = options_.source + "/" + files_[i].key;
-  formats::MotionFileOptions reading;
+  MotionFileOptions reading;
   if (const CaptionEntry* entry = described_[i]) {
     const ReadingLabels labels(captions_.path(), *entry);
     if (!entry->canonical) reading = labels.options();
@@ -225,9 +225,9 @@ std::vector<PreparedClip> MotionFolder::prepare(size_t i,
     }
   }
   if (!options_.skeleton_map.empty()) reading.skeleton_map = options_.skeleton_map;
-  const formats::LoadedMotion loaded = options_.skeleton_map.empty()
-                                           ? load_with_hint(files_[i], reading, warnings)
-                                           : formats::load_motion_file(files_[i].path, reading);
+  const LoadedMotion loaded = options_.skeleton_map.empty()
+                                  ? load_with_hint(files_[i], reading, warnings)
+                                  : load_motion(files_[i].path, reading);
   return cut_into_clips(clip, loaded.motion, humanml_skeleton(), window_options());
 }
 

@@ -1,16 +1,15 @@
-#include "formats/motion_file.h"
+#include "remomask/motion_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "base/file.h"
 #include "formats/axis_detection.h"
 #include "formats/bvh.h"
-#include "formats/inverse_kinematics.h"
+#include "formats/motion_writing.h"
 #include "formats/npy.h"
 #include "formats/skeleton_map.h"
 #include "motion/canonical.h"
@@ -22,12 +21,6 @@ namespace remomask::formats {
 namespace {
 
 constexpr int kJoints = 22;
-
-std::string lower_extension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 void check_options(const MotionFileOptions& options) {
   if (options.metres_per_unit &&
@@ -123,40 +116,26 @@ LoadedMotion load_npy_motion(const std::string& path, const MotionFileOptions& o
 
 }  // namespace
 
-LoadedMotion load_motion_file(const std::string& path, const MotionFileOptions& options) {
-  check_options(options);
-  const std::string extension = lower_extension(path);
+}  // namespace remomask::formats
+
+namespace remomask {
+
+LoadedMotion load_motion(const std::string& path, const MotionFileOptions& options) {
+  formats::check_options(options);
+  const std::string extension = formats::lower_extension(path);
   try {
-    if (extension == ".bvh") return load_bvh_motion(path, options);
-    if (extension == ".npy") return load_npy_motion(path, options);
+    if (extension == ".bvh") return formats::load_bvh_motion(path, options);
+    if (extension == ".npy") return formats::load_npy_motion(path, options);
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
     throw FileError(path, 0, error.what());
   }
-  throw FileError(path, 0, "is of no known kind; motions are read from .bvh and .npy");
+  throw FileError(path, 0, "is not a known kind of file; motions are read from .bvh and .npy");
 }
 
-void save_motion_file(const std::string& path, const Motion& motion, const FileMetadata& metadata) {
-  if (motion.joints != kJoints) {
-    throw Error(
-        fmt::format("only motions of 22 joints can be written, this one has {}", motion.joints));
-  }
-  const std::string extension = lower_extension(path);
-  if (extension == ".bvh") {
-    write_file_atomically(path, format_bvh(motion_to_bvh(motion)));
-  } else if (extension == ".npy") {
-    const NpyArray array{{static_cast<size_t>(motion.frames), kJoints, 3}, motion.positions};
-    write_file_atomically(path, format_npy(array));
-  } else {
-    throw FileError(path, 0, "is of no known kind; motions are written as .bvh or .npy");
-  }
-  if (metadata.empty()) return;
-  nlohmann::ordered_json fields;
-  for (const auto& [name, value] : metadata) fields[name] = value;
-  write_file_atomically(
-      path + ".json",
-      fields.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+void save_motion(const std::string& path, const Motion& motion) {
+  formats::write_motion(path, motion, nullptr);
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask

@@ -14,6 +14,10 @@ namespace remomask::generator {
 
 namespace {
 
+void check_stop(const Monitor& monitor) {
+  if (monitor.stop_requested()) throw Interrupted("the generation was stopped");
+}
+
 // Streams of one sample's seed; passes of the masked transformer come first.
 constexpr uint64_t kScoreStream = 1u << 20, kResidualStream = 2u << 20;
 
@@ -142,7 +146,7 @@ std::vector<int64_t> masked_counts(int64_t count, int steps) {
 
 at::Tensor sample_base(MaskedTransformer model, const Condition& condition, int64_t frames,
                        uint64_t seed, const SamplingOptions& options,
-                       const std::optional<KnownTokens>& known) {
+                       const std::optional<KnownTokens>& known, const Monitor& monitor) {
   const torch::NoGradGuard no_grad;
   model->eval();
   const MaskedConfig& config = model->config();
@@ -169,6 +173,7 @@ at::Tensor sample_base(MaskedTransformer model, const Condition& condition, int6
   const auto counts = masked_counts(static_cast<int64_t>(cells.size()), options.steps);
   std::vector<int64_t> masked = cells;
   for (size_t i = 0; i < counts.size(); ++i) {
+    check_stop(monitor);
     sampler.draw(masked, i);
     if (i + 1 < counts.size()) {
       // Cells that were kept once stay: only the newest draws compete.
@@ -179,6 +184,7 @@ at::Tensor sample_base(MaskedTransformer model, const Condition& condition, int6
   }
   const auto tenth = std::max<int64_t>(1, static_cast<int64_t>(cells.size()) / 10);
   for (int round = 0; round < options.correction_rounds; ++round) {
+    check_stop(monitor);
     const auto weak = sampler.least_confident(cells, tenth, 0, 0);
     sampler.draw(weak, counts.size() + static_cast<size_t>(round));
   }
@@ -187,7 +193,7 @@ at::Tensor sample_base(MaskedTransformer model, const Condition& condition, int6
 
 at::Tensor sample_residual(ResidualTransformer model, const Condition& condition,
                            const at::Tensor& base, uint64_t seed, const SamplingOptions& options,
-                           const std::optional<KnownTokens>& known) {
+                           const std::optional<KnownTokens>& known, const Monitor& monitor) {
   const torch::NoGradGuard no_grad;
   model->eval();
   const ResidualConfig& config = model->config();
@@ -204,6 +210,7 @@ at::Tensor sample_residual(ResidualTransformer model, const Condition& condition
   const auto device = caches.front().keys.device();
   const int64_t kept = kept_codes(options.top_share, codes);
   for (int64_t level = 1; level < config.levels; ++level) {
+    check_stop(monitor);
     const auto logits = guided_logits(
         model->forward(tokens.unsqueeze(0).expand({pair, frames, rows, config.levels}).to(device),
                        torch::full({pair}, level, torch::kLong), caches),

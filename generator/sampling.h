@@ -7,19 +7,10 @@
 #include "base/random.h"
 #include "generator/masked_transformer.h"
 #include "generator/residual_transformer.h"
+#include "remomask/generation.h"
+#include "remomask/progress.h"
 
 namespace remomask::generator {
-
-struct SamplingOptions {
-  int steps = 10;             ///< passes of the masked transformer
-  double guidance = 4;        ///< w of un + w (con - un); the papers' scale s is w - 1
-  double temperature = 1;     ///< of the sampled codes; 0: the best code
-  double top_share = 0.1;     ///< share of the codes that can be sampled
-  double score_noise = 0;     ///< Gumbel noise on the log-confidences, annealed to 0
-  int correction_rounds = 0;  ///< passes that re-draw the least likely tenth afterwards
-  double residual_guidance = 3;
-  double residual_temperature = 1;
-};
 
 /// How many of `count` tokens are masked before pass i = 0 .. steps-1:
 /// round(count cos(pi/2 i/steps)), at least 1 and always fewer than before
@@ -40,13 +31,15 @@ struct KnownTokens {
 /// conditions.
 at::Tensor sample_base(MaskedTransformer model, const Condition& condition, int64_t frames,
                        uint64_t seed, const SamplingOptions& options,
-                       const std::optional<KnownTokens>& known = std::nullopt);
+                       const std::optional<KnownTokens>& known = std::nullopt,
+                       const Monitor& monitor = {});
 
 /// All levels int64 [T, rows, levels] from base tokens [T, rows], level by
 /// level. Levels of known cells are kept.
 at::Tensor sample_residual(ResidualTransformer model, const Condition& condition,
                            const at::Tensor& base, uint64_t seed, const SamplingOptions& options,
-                           const std::optional<KnownTokens>& known = std::nullopt);
+                           const std::optional<KnownTokens>& known = std::nullopt,
+                           const Monitor& monitor = {});
 
 /// Gumbel-argmax over the `kept` largest of `count` logits at a temperature;
 /// the noise of a code is number `first_counter + code` of `random`. Equal

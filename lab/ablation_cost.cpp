@@ -77,8 +77,8 @@ double training_cost(const training::TrainingRecipe& recipe, const std::string& 
   return kTraining * operations * steps / 1e9;
 }
 
-double trial_cost(const training::TrainingRecipe& recipe,
-                  const generator::SamplingOptions& sampling, int prompts) {
+double trial_cost(const training::TrainingRecipe& recipe, const SamplingOptions& sampling,
+                  int prompts) {
   const double guided = sampling.guidance == 1 ? 1 : 2;
   const auto levels = static_cast<double>(recipe.model.tokenizer.levels - 1);
   const double operations =

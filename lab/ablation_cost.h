@@ -12,7 +12,7 @@ namespace remomask::lab {
 double training_cost(const training::TrainingRecipe& recipe, const std::string& stage);
 
 /// Of generating `prompts` motions of middle length.
-double trial_cost(const training::TrainingRecipe& recipe,
-                  const generator::SamplingOptions& sampling, int prompts);
+double trial_cost(const training::TrainingRecipe& recipe, const SamplingOptions& sampling,
+                  int prompts);
 
 }  // namespace remomask::lab

@@ -111,8 +111,7 @@ ExamResult AblationExam::grade(const std::vector<Motion>& motions) const {
   std::vector<at::Tensor> vectors;
   std::vector<double> foot_skate;
   for (const Motion& motion : motions) {
-    const pipeline::PhysicalMetrics physical =
-        pipeline::measure_physical(motion, humanml_skeleton());
+    const PhysicalMetrics physical = pipeline::measure_physical(motion, humanml_skeleton());
     foot_skate.push_back(physical.foot_skate);
     vectors.push_back(physical.finite
                           ? judge_.embed_motion(motion)

@@ -79,7 +79,7 @@ AblationModel plan_model(const AblationOptions& options, const std::string& vari
 }
 
 AblationTrial plan_trial(const AblationOptions& options, const AblationPlan& plan, size_t model,
-                         const std::string& sweep, const generator::SamplingOptions& sampling,
+                         const std::string& sweep, const SamplingOptions& sampling,
                          const AblationData& data) {
   nlohmann::json identity = {{"sampling", sampling_description(sampling)},
                              {"prompts", options.prompts},
@@ -119,7 +119,7 @@ std::vector<size_t> working_order(const std::vector<AblationModel>& models) {
 
 }  // namespace
 
-nlohmann::json sampling_description(const generator::SamplingOptions& sampling) {
+nlohmann::json sampling_description(const SamplingOptions& sampling) {
   return {{"steps", sampling.steps},
           {"guidance", sampling.guidance},
           {"temperature", sampling.temperature},
@@ -155,12 +155,12 @@ AblationPlan plan_ablation(const AblationOptions& options, const AblationData& d
       throw Error("the guidance of " + options.variants.front() +
                   " cannot be swept: it is trained without; name another variant first");
     }
-    generator::SamplingOptions sampling = plan.models.front().recipe.sampling;
+    SamplingOptions sampling = plan.models.front().recipe.sampling;
     sampling.guidance = guidance;
     plan.trials.push_back(plan_trial(options, plan, 0, "guidance", sampling, data));
   }
   for (const int steps : options.steps_sweep) {
-    generator::SamplingOptions sampling = plan.models.front().recipe.sampling;
+    SamplingOptions sampling = plan.models.front().recipe.sampling;
     sampling.steps = steps;
     plan.trials.push_back(plan_trial(options, plan, 0, "steps", sampling, data));
   }

@@ -40,7 +40,7 @@ struct AblationModel {
 struct AblationTrial {
   size_t model = 0;
   std::string sweep;  ///< "", "guidance" or "steps"
-  generator::SamplingOptions sampling;
+  SamplingOptions sampling;
   std::string file;  ///< of the result
 };
 
@@ -72,6 +72,6 @@ struct AblationData {
 /// variants, stages or presets and for empty or repeated lists.
 AblationPlan plan_ablation(const AblationOptions& options, const AblationData& data);
 
-nlohmann::json sampling_description(const generator::SamplingOptions& sampling);
+nlohmann::json sampling_description(const SamplingOptions& sampling);
 
 }  // namespace remomask::lab

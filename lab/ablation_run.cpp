@@ -10,7 +10,7 @@
 
 #include "base/file.h"
 #include "motion/features.h"
-#include "pipeline/motion_generator.h"
+#include "pipeline/evidence.h"
 #include "remomask/error.h"
 
 namespace remomask::lab {
@@ -27,6 +27,46 @@ std::vector<float> row_of(const at::Tensor& matrix, int64_t row) {
   const at::Tensor vector = matrix[row].contiguous();
   return {vector.data_ptr<float>(), vector.data_ptr<float>() + vector.numel()};
 }
+
+/// Evidence from the training clips: one clip of each group, none of the prompt's own group.
+class TrainingSource final : public pipeline::EvidenceSource {
+ public:
+  TrainingSource(const training::GeneratorData& data, const std::vector<db::TrainingClip>& train,
+                 int own_group)
+      : data_(data), train_(train), own_group_(own_group) {}
+
+  std::vector<search::FoundClip> find(const std::vector<float>& query, int k,
+                                      const ClipFilter&) const override {
+    const at::Tensor vector = torch::tensor(query);
+    const at::Tensor similarity = data_.motion.matmul(vector);
+    const at::Tensor order = torch::argsort(similarity, 0, /*descending=*/true);
+    std::vector<search::FoundClip> found;
+    std::set<int> taken = {own_group_};
+    for (int64_t rank = 0; rank < order.size(0) && static_cast<int>(found.size()) < k; ++rank) {
+      const auto clip = order[rank].item<int64_t>();
+      const training::TokenClip& entry = data_.train.clips[static_cast<size_t>(clip)];
+      if (!taken.insert(entry.group).second) continue;
+      search::FoundClip hit;
+      hit.hit.clip.id = clip;
+      hit.hit.rank = static_cast<int>(found.size()) + 1;
+      hit.hit.similarity = similarity[clip].item<float>();
+      hit.motion = row_of(data_.motion, clip);
+      hit.text = row_of(data_.motion_text, clip);
+      found.push_back(std::move(hit));
+    }
+    return found;
+  }
+
+  Motion motion(int64_t clip) const override {
+    const training::TokenClip& entry = data_.train.clips[static_cast<size_t>(clip)];
+    return motion::recover_motion(train_[entry.source].features, humanml_skeleton());
+  }
+
+ private:
+  const training::GeneratorData& data_;
+  const std::vector<db::TrainingClip>& train_;
+  int own_group_;
+};
 
 /// Passes the monitor of one job on as progress of the whole plan.
 class PlanProgress {
@@ -120,8 +160,7 @@ double AblationClock::seconds(const AblationJob& job) const {
   return job.gigaoperations / kGuessedSpeed;
 }
 
-std::vector<Motion> generate_answers(const AblationModel& model,
-                                     const generator::SamplingOptions& sampling,
+std::vector<Motion> generate_answers(const AblationModel& model, const SamplingOptions& sampling,
                                      const std::vector<evaluation::LabelPrompt>& prompts,
                                      const std::vector<int>& groups,
                                      const training::GeneratorData& data,
@@ -132,37 +171,19 @@ std::vector<Motion> generate_answers(const AblationModel& model,
     if (stage != "text") stages.emplace(stage, nn::load_stage(file, stage));
   }
   const pipeline::Generator generator(stages);
+  Monitor stop_only;
+  stop_only.stop = monitor.stop;
   std::vector<Motion> motions;
   for (size_t i = 0; i < prompts.size(); ++i) {
-    if (monitor.stop_requested()) throw Interrupted("the ablation was stopped in a trial");
     const evaluation::LabelPrompt& prompt = prompts[i];
-    const at::Tensor query = generator.retriever().encode_text({prompt.text}).query[0];
-    const at::Tensor similarity = data.motion.matmul(query);
-    const at::Tensor order = torch::argsort(similarity, 0, /*descending=*/true);
-    std::vector<pipeline::RetrievedMotion> hits;
-    std::set<int> taken = {groups[i]};
-    for (int64_t rank = 0;
-         rank < order.size(0) && static_cast<int64_t>(hits.size()) < generator.max_hits(); ++rank) {
-      const auto clip = order[rank].item<int64_t>();
-      const training::TokenClip& found = data.train.clips[static_cast<size_t>(clip)];
-      if (!taken.insert(found.group).second) continue;
-      pipeline::RetrievedMotion hit;
-      hit.clip_id = clip;
-      hit.motion = row_of(data.motion, clip);
-      hit.text = row_of(data.motion_text, clip);
-      hit.similarity = similarity[clip].item<double>();
-      hit.caption_similarity = data.motion_text[clip].dot(query).item<double>();
-      if (static_cast<int64_t>(hits.size()) < generator.sequence_hits()) {
-        hit.poses = motion::recover_motion(train[found.source].features, humanml_skeleton());
-      }
-      hits.push_back(std::move(hit));
-    }
-    pipeline::GenerateOptions options;
+    GenerateOptions options;
     options.seconds = prompt.frames / humanml_skeleton().fps;
     options.seed = prompt.seed;
     options.sampling = sampling;
     options.follow = 0;  // what the networks make, not what a retrieved motion gives
-    motions.push_back(generator.generate(prompt.text, hits, options).motion);
+    const TrainingSource source(data, train, groups[i]);
+    const auto found = pipeline::find_evidence(generator, source, prompt.text, options);
+    motions.push_back(generator.generate(prompt.text, found.motions, options, stop_only).motion);
     monitor.report(
         {"answer prompts", static_cast<double>(i + 1), static_cast<double>(prompts.size()), ""});
   }

@@ -37,8 +37,7 @@ void run_ablation(const AblationPlan& plan, const training::TrainingSplits& clip
 /// most similar ones to the prompt, one of a group, none of the prompt's own group
 /// (`groups`, by the number of the prompt); `data` was made from `train`. Each motion is as long as
 /// its prompt's clip.
-std::vector<Motion> generate_answers(const AblationModel& model,
-                                     const generator::SamplingOptions& sampling,
+std::vector<Motion> generate_answers(const AblationModel& model, const SamplingOptions& sampling,
                                      const std::vector<evaluation::LabelPrompt>& prompts,
                                      const std::vector<int>& groups,
                                      const training::GeneratorData& data,

@@ -178,6 +178,8 @@ Motion recover_motion(const Features& features, const Skeleton& skeleton) {
   const Layout layout(skeleton.joints());
   const RootPath path = recover_root(features);
   Motion motion(features.frames, skeleton.joints());
+  motion.fps = skeleton.fps;
+  motion.skeleton = skeleton.name;
   for (int t = 0; t < features.frames; ++t) {
     const Vec3& root = path.positions[t];
     const Quat to_world = path.facing[t].conjugate();

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "pipeline/motion_embedding.h"
+#include "pipeline/physical.h"
 #include "remomask/error.h"
 
 namespace remomask::pipeline {
@@ -18,11 +19,10 @@ constexpr double kWorstScore = -1000;
 
 double jerk_penalty(double jerk) { return kJerkWeight * std::max(0.0, jerk / kAllowedJerk - 1); }
 
-CandidateScore score_candidate(const retriever::Retriever& retriever,
-                               const std::vector<float>& query, const Motion& motion,
-                               const Skeleton& skeleton, double bend) {
+Candidate score_candidate(const retriever::Retriever& retriever, const std::vector<float>& query,
+                          const Motion& motion, const Skeleton& skeleton, double bend) {
   const PhysicalMetrics physical = measure_physical(motion, skeleton);
-  CandidateScore result;
+  Candidate result;
   result.bend = bend;
   if (!physical.finite) {
     result.score = kWorstScore;
@@ -43,7 +43,7 @@ CandidateScore score_candidate(const retriever::Retriever& retriever,
   return result;
 }
 
-std::vector<int> rank_candidates(const std::vector<CandidateScore>& scores) {
+std::vector<int> rank_candidates(const std::vector<Candidate>& scores) {
   std::vector<int> order(scores.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {

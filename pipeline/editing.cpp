@@ -13,11 +13,11 @@ namespace remomask::pipeline {
 
 namespace {
 
-motion::PartMask edit_mask(const Motion& original, const std::vector<EditSpan>& spans,
+motion::PartMask edit_mask(const Motion& original, const std::vector<CellSpan>& spans,
                            int extend_frames) {
   if (extend_frames < 0) throw Error("a motion cannot be continued by fewer than no frames");
   motion::PartMask mask(original.frames + extend_frames);
-  for (const EditSpan& span : spans) {
+  for (const CellSpan& span : spans) {
     if (span.last > original.frames) {
       throw Error("the span of frames " + std::to_string(span.first) + " to " +
                   std::to_string(span.last) + " goes beyond the motion's " +
@@ -62,8 +62,9 @@ at::Tensor unchanged_cells(const motion::PartMask& mask, int64_t frames, int64_t
 }  // namespace
 
 Edited edit_motion(const Generator& generator, const Motion& original,
-                   const std::vector<EditSpan>& spans, const std::string& prompt,
-                   const std::vector<RetrievedMotion>& hits, const EditOptions& options) {
+                   const std::vector<CellSpan>& spans, const std::string& prompt,
+                   const std::vector<RetrievedMotion>& hits, const EditOptions& options,
+                   const Monitor& monitor) {
   const Skeleton& skeleton = generator.skeleton();
   if (skeleton.name != "humanml3d") {
     throw Error("only models of the skeleton humanml3d can edit, this one is for " + skeleton.name);
@@ -85,12 +86,13 @@ Edited edit_motion(const Generator& generator, const Motion& original,
   const at::Tensor changed = canvas.known.all(1).logical_not().nonzero().reshape({-1});
   const FillReport filled =
       generator.fill(canvas, changed[0].item<int64_t>(), changed[-1].item<int64_t>() + 1, prompt,
-                     hits, options.generate, &result.times);
+                     hits, options, &result.times, monitor);
   result.hits_used = filled.hits_used;
   result.followed = filled.followed;
-  const Motion made = slice(generator.decode(canvas.tokens), 0, result.mask.frames());
-  result.motion = kinematics::splice_motion(original, made, result.mask, skeleton, options.splice,
-                                            &result.splice);
+  const Motion made =
+      slice(generator.decode(canvas.tokens, options.held_feet), 0, result.mask.frames());
+  result.motion = kinematics::splice_motion(original, made, result.mask, skeleton,
+                                            {.fade = options.fade}, &result.splice);
   return result;
 }
 

@@ -9,19 +9,9 @@
 namespace remomask::pipeline {
 
 /// Frames [first, last) of some body parts (order of body_parts(); none: all six).
-struct EditSpan {
+struct CellSpan {
   int first = 0, last = 0;
   std::vector<int> parts;
-};
-
-struct EditOptions {
-  EditOptions() { generate.follow = 0; }
-
-  /// `seconds` is not read: the length is that of the motion. `follow` begins with 0: what
-  /// is edited joins what stays, not a retrieved motion.
-  GenerateOptions generate;
-  int extend_frames = 0;  ///< new frames behind the last one
-  kinematics::SpliceOptions splice;
 };
 
 struct Edited {
@@ -44,7 +34,8 @@ struct Edited {
 /// Throws Error for spans outside of the motion, nothing to do, a model of
 /// another skeleton, or values that are not finite.
 Edited edit_motion(const Generator& generator, const Motion& original,
-                   const std::vector<EditSpan>& spans, const std::string& prompt,
-                   const std::vector<RetrievedMotion>& hits, const EditOptions& options = {});
+                   const std::vector<CellSpan>& spans, const std::string& prompt,
+                   const std::vector<RetrievedMotion>& hits, const EditOptions& options = {},
+                   const Monitor& monitor = {});
 
 }  // namespace remomask::pipeline

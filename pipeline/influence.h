@@ -13,6 +13,7 @@ namespace remomask::pipeline {
 /// generations as there are hits.
 std::vector<double> hit_influence(const Generator& generator, const std::string& prompt,
                                   const std::vector<RetrievedMotion>& hits,
-                                  const GenerateOptions& options, const Generated& made);
+                                  const GenerateOptions& options, const Generated& made,
+                                  const Monitor& monitor = {});
 
 }  // namespace remomask::pipeline

@@ -17,11 +17,23 @@ constexpr uint64_t kLengthStream = 0x6c656e67;
 
 }  // namespace
 
+const char* length_rule_name(LengthRule rule) {
+  switch (rule) {
+    case LengthRule::evidence:
+      return "evidence";
+    case LengthRule::likely:
+      return "likely";
+    case LengthRule::sample:
+      return "sample";
+  }
+  return "";
+}
+
 LengthRule parse_length_rule(const std::string& name) {
-  if (name == "evidence") return LengthRule::evidence;
-  if (name == "likely") return LengthRule::likely;
-  if (name == "sample") return LengthRule::sample;
-  throw Error("there is no rule for lengths '" + name + "'; use evidence, likely or sample");
+  for (const LengthRule rule : {LengthRule::evidence, LengthRule::likely, LengthRule::sample}) {
+    if (name == length_rule_name(rule)) return rule;
+  }
+  throw Error("there is no length rule \"" + name + "\"; use evidence, likely or sample");
 }
 
 std::vector<double> length_distribution(const std::vector<LengthNeighbour>& neighbours) {

@@ -4,17 +4,14 @@
 #include <string>
 #include <vector>
 
-namespace remomask::pipeline {
+#include "remomask/generation.h"
 
-/// How long a motion becomes of which no length was asked for.
-enum class LengthRule {
-  evidence,  ///< the median of the retrieved motions that it is made from
-  likely,    ///< the likeliest length of the distribution
-  sample,    ///< a length drawn from it, by the seed
-};
+namespace remomask::pipeline {
 
 /// Throws Error for another name than "evidence", "likely" and "sample".
 LengthRule parse_length_rule(const std::string& name);
+/// The name that parse_length_rule() reads.
+const char* length_rule_name(LengthRule rule);
 
 /// A clip near to a sentence.
 struct LengthNeighbour {

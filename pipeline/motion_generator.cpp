@@ -70,15 +70,16 @@ void copy_vector(const std::vector<float>& values, const at::Tensor& out, int64_
 }  // namespace
 
 struct Generator::Impl {
-  retriever::Retriever retriever;
+  std::shared_ptr<const retriever::Retriever> retriever;
   tokenizer::Tokenizer tokenizer;
   generator::MaskedTransformer masked;
   generator::ResidualTransformer residual{nullptr};
   const Skeleton& skeleton;
   std::optional<EvidenceGate> gate;  // none: every hit is trusted in full
 
-  explicit Impl(const std::map<std::string, nn::ModelStage>& stages)
-      : retriever(need_stage(stages, "retriever")),
+  Impl(std::shared_ptr<const retriever::Retriever> shared,
+       const std::map<std::string, nn::ModelStage>& stages)
+      : retriever(std::move(shared)),
         tokenizer(need_stage(stages, "tokenizer")),
         masked(generator::load_masked(need_stage(stages, "masked"))),
         skeleton(skeleton_named(tokenizer.config().skeleton)) {
@@ -87,16 +88,17 @@ struct Generator::Impl {
     const generator::MaskedConfig& base = masked->config();
     need_equal(base.rows, tokens.rows, "the number of rows");
     need_equal(base.codes, tokens.codes, "the number of codes");
-    need_equal(base.embedding_width, retriever.embedding_width(), "the width of the shared space");
-    need_equal(base.text_width, retriever.text_width(), "the width of the text states");
+    need_equal(base.embedding_width, retriever->embedding_width(), "the width of the shared space");
+    need_equal(base.text_width, retriever->text_width(), "the width of the text states");
     if (tokens.levels == 1) return;
     residual = generator::load_residual(need_stage(stages, "residual"));
     const generator::ResidualConfig& upper = residual->config();
     need_equal(upper.rows, tokens.rows, "the number of rows");
     need_equal(upper.codes, tokens.codes, "the number of codes");
     need_equal(upper.levels, tokens.levels, "the number of levels");
-    need_equal(upper.embedding_width, retriever.embedding_width(), "the width of the shared space");
-    need_equal(upper.text_width, retriever.text_width(), "the width of the text states");
+    need_equal(upper.embedding_width, retriever->embedding_width(),
+               "the width of the shared space");
+    need_equal(upper.text_width, retriever->text_width(), "the width of the text states");
   }
 
   /// All levels of a motion, int64 [frames / 4, rows, levels].
@@ -130,13 +132,13 @@ struct Generator::Impl {
 
   generator::Condition condition(const std::string& prompt,
                                  const std::vector<RetrievedMotion>& hits) const {
-    const retriever::TextEncoding text = retriever.encode_text({prompt});
+    const retriever::TextEncoding text = retriever->encode_text({prompt});
     const auto count = static_cast<int64_t>(hits.size());
     generator::Condition result;
     result.text_states = text.states;
     result.text_mask = text.mask;
     result.text_query = text.query;
-    result.hit_motion = torch::zeros({1, count, retriever.embedding_width()});
+    result.hit_motion = torch::zeros({1, count, retriever->embedding_width()});
     result.hit_text = torch::zeros_like(result.hit_motion);
     result.hit_similarity = torch::zeros({1, count});
     for (int64_t i = 0; i < count; ++i) {
@@ -194,13 +196,23 @@ struct Generator::Impl {
   }
 };
 
+Generator::Generator(std::shared_ptr<const retriever::Retriever> retriever,
+                     const std::map<std::string, nn::ModelStage>& stages)
+    : impl_(std::make_unique<Impl>(std::move(retriever), stages)) {}
 Generator::Generator(const std::map<std::string, nn::ModelStage>& stages)
-    : impl_(std::make_unique<Impl>(stages)) {}
+    : Generator(std::make_shared<retriever::Retriever>(need_stage(stages, "retriever")), stages) {}
 Generator::~Generator() = default;
 Generator::Generator(Generator&&) noexcept = default;
 Generator& Generator::operator=(Generator&&) noexcept = default;
 
-const retriever::Retriever& Generator::retriever() const { return impl_->retriever; }
+const retriever::Retriever& Generator::retriever() const { return *impl_->retriever; }
+double Generator::trust(const RetrievedMotion& hit) const { return impl_->trust(hit); }
+
+std::vector<float> Generator::sentence_vector(const std::string& sentence) const {
+  const at::Tensor query = impl_->retriever->encode_text({sentence}).query.contiguous();
+  return {query.data_ptr<float>(), query.data_ptr<float>() + query.numel()};
+}
+
 const tokenizer::Tokenizer& Generator::tokenizer() const { return impl_->tokenizer; }
 int64_t Generator::max_hits() const { return impl_->masked->config().max_hits; }
 int64_t Generator::sequence_hits() const { return impl_->masked->config().sequence_hits; }
@@ -247,7 +259,8 @@ TokenCanvas Generator::canvas(int64_t frames) const {
 
 FillReport Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last,
                            const std::string& prompt, const std::vector<RetrievedMotion>& hits,
-                           const GenerateOptions& options, GenerationTimes* times) const {
+                           const GenerateOptions& options, GenerationTimes* times,
+                           const Monitor& monitor) const {
   const torch::NoGradGuard no_grad;
   Stopwatch watch;
   GenerationTimes spent;
@@ -276,17 +289,19 @@ FillReport Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last,
                                        draft.known.slice(0, window.first, window.last)};
     const auto base = generator::sample_base(
         impl_->masked, condition, window.last - window.first, seed, options.sampling,
-        generator::KnownTokens{known.tokens.select(2, 0), known.known});
+        generator::KnownTokens{known.tokens.select(2, 0), known.known}, monitor);
     spent.base += watch.lap();
     const auto tokens = impl_->residual
                             ? generator::sample_residual(impl_->residual, condition, base, seed,
-                                                         options.sampling, known)
+                                                         options.sampling, known, monitor)
                             : base.unsqueeze(2);
     spent.residual += watch.lap();
     canvas.tokens.slice(0, window.first, window.last).copy_(tokens);
     canvas.known.slice(0, window.first, window.last).fill_(true);
     draft.tokens.slice(0, window.first, window.last).copy_(tokens);
     draft.known.slice(0, window.first, window.last).fill_(true);
+    monitor.report(
+        {"generate", static_cast<double>(i + 1), static_cast<double>(windows.size()), ""});
   }
   if (times) {
     times->text += spent.text;
@@ -306,11 +321,12 @@ Motion Generator::decode(const at::Tensor& tokens, bool held_feet) const {
 }
 
 Generated Generator::generate(const std::string& prompt, const std::vector<RetrievedMotion>& hits,
-                              const GenerateOptions& options) const {
+                              const GenerateOptions& options, const Monitor& monitor) const {
   Generated result;
   const int frames = motion_frames(options.seconds, read_hits(hits, options), impl_->skeleton.fps);
   TokenCanvas map = canvas((frames + tokenizer::kFramesPerToken - 1) / tokenizer::kFramesPerToken);
-  const FillReport filled = fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times);
+  const FillReport filled =
+      fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times, monitor);
   result.hits_used = filled.hits_used;
   result.followed = filled.followed;
   result.tokens = map.tokens;

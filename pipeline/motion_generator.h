@@ -9,7 +9,8 @@
 
 #include "generator/sampling.h"
 #include "nn/model_file.h"
-#include "remomask/motion.h"
+#include "remomask/generation.h"
+#include "remomask/progress.h"
 #include "retriever/retriever.h"
 #include "tokenizer/tokenizer.h"
 
@@ -26,26 +27,6 @@ struct RetrievedMotion {
   /// Its motion, for models that read hits frame by frame (sequence_hits());
   /// without it the hit is its vectors only.
   std::optional<Motion> poses;
-};
-
-struct GenerateOptions {
-  /// Exactly round(seconds x rate) frames, 1 to 600 s; more than 9.8 s are made
-  /// piece by piece. Default: the median length of the hits, 5 s without hits, at most 9.8 s.
-  std::optional<double> seconds;
-  uint64_t seed = 0;
-  bool use_retrieval = true;    ///< false: the hits are not read at all
-  bool read_untrusted = false;  ///< read hits too that the model's evidence gate does not trust
-  bool held_feet = true;        ///< standing feet do not slide (hold_feet)
-  /// Share of the token frames that keep the codes of one of the hits with poses
-  /// (choose_draft, followed_frames), less where the model's evidence gate trusts it less.
-  /// 0: the map starts empty; 1: the hit itself, through the tokenizer.
-  double follow = 0.75;
-  generator::SamplingOptions sampling;
-};
-
-/// Wall time in seconds.
-struct GenerationTimes {
-  double text = 0, base = 0, residual = 0, decode = 0, finish = 0;
 };
 
 /// The hit whose codes a motion started from.
@@ -83,6 +64,9 @@ class Generator {
   /// only where the tokenizer has several levels). Throws Error when one lacks
   /// or when their sizes do not fit together.
   explicit Generator(const std::map<std::string, nn::ModelStage>& stages);
+  /// The same with a retriever that is loaded already.
+  Generator(std::shared_ptr<const retriever::Retriever> retriever,
+            const std::map<std::string, nn::ModelStage>& stages);
   ~Generator();
   Generator(Generator&&) noexcept;
   Generator& operator=(Generator&&) noexcept;
@@ -90,7 +74,7 @@ class Generator {
   /// An empty prompt means: no text. At most the model's max_hits best hits are
   /// used. Throws Error for a hit of another width or seconds that are no number.
   Generated generate(const std::string& prompt, const std::vector<RetrievedMotion>& hits,
-                     const GenerateOptions& options = {}) const;
+                     const GenerateOptions& options = {}, const Monitor& monitor = {}) const;
 
   /// A map of `frames` token frames of which nothing is known.
   TokenCanvas canvas(int64_t frames) const;
@@ -100,7 +84,7 @@ class Generator {
   /// map, and as generate() does.
   FillReport fill(TokenCanvas& canvas, int64_t first, int64_t last, const std::string& prompt,
                   const std::vector<RetrievedMotion>& hits, const GenerateOptions& options,
-                  GenerationTimes* times = nullptr) const;
+                  GenerationTimes* times = nullptr, const Monitor& monitor = {}) const;
   /// Tokens of any length -> a motion of four frames each with the bone lengths
   /// of the skeleton, smoothed by a Gaussian of 40 ms. It starts at the origin and faces +Z. With
   /// `held_feet` standing feet do not slide (hold_feet).
@@ -115,6 +99,10 @@ class Generator {
   /// fits is better made from the text alone. None without `options.use_retrieval`.
   std::vector<RetrievedMotion> read_hits(const std::vector<RetrievedMotion>& hits,
                                          const GenerateOptions& options) const;
+  /// How far the model's evidence gate trusts a hit, 0 to 1; 1 for a model without a gate.
+  double trust(const RetrievedMotion& hit) const;
+  /// The retriever's vector of a sentence [E], L2-normalised.
+  std::vector<float> sentence_vector(const std::string& sentence) const;
   /// Of how many hits, the best ones, the poses are read.
   int64_t sequence_hits() const;
 

@@ -10,9 +10,10 @@
 #include "generator/token_windows.h"
 #include "pipeline/motion_finish.h"
 #include "remomask/error.h"
+#include "text/caption.h"
 #include "tokenizer/tokenizer_network.h"
 
-namespace remomask::pipeline {
+namespace remomask {
 
 namespace {
 
@@ -59,6 +60,14 @@ ScriptLine parse_line(std::string_view text, const std::string& path, long numbe
   return result;
 }
 
+void check_sentence(const ScriptLine& line, const std::string& path) {
+  try {
+    text::normalise_prompt(line.sentence);
+  } catch (const Error& error) {
+    throw FileError(path, line.line, error.what());
+  }
+}
+
 }  // namespace
 
 std::vector<ScriptLine> parse_script(std::string_view text, const std::string& path) {
@@ -69,13 +78,19 @@ std::vector<ScriptLine> parse_script(std::string_view text, const std::string& p
     const size_t end = text.find('\n');
     const std::string_view line = trimmed(without_comment(text.substr(0, end)));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (!line.empty()) lines.push_back(parse_line(line, path, number));
+    if (line.empty()) continue;
+    lines.push_back(parse_line(line, path, number));
+    check_sentence(lines.back(), path);
   }
   if (lines.empty()) {
     throw FileError(path, 0, "holds no sentence; write one a line, with its seconds before it");
   }
   return lines;
 }
+
+}  // namespace remomask
+
+namespace remomask::pipeline {
 
 namespace {
 
@@ -100,18 +115,20 @@ std::vector<MadeSegment> lay_out(const Generator& generator,
 /// Fills token frames [begin, end), and the seam before them, with the best candidate.
 void fill_segment(const Generator& generator, TokenCanvas& canvas, int64_t begin, int64_t end,
                   const ScriptSegment& segment, const ScriptOptions& options, MadeSegment& made,
-                  GenerationTimes& times) {
+                  GenerationTimes& times, const Monitor& monitor) {
   const int64_t from = std::max<int64_t>(0, begin - options.seam_tokens);
   const int64_t seen = std::max<int64_t>(0, from - generator::kContextTokens);
   canvas.known.slice(0, from, begin).fill_(false);
   const uint64_t first_seed = made.seed;
+  Monitor stop_only;  // The progress of a script counts sentences.
+  stop_only.stop = monitor.stop;
   TokenCanvas best;
   for (int i = 0; i < options.candidates; ++i) {
     TokenCanvas candidate{canvas.tokens.clone(), canvas.known.clone()};
     GenerateOptions generate = options.generate;
     generate.seed = i == 0 ? first_seed : mix_seed(first_seed, static_cast<uint64_t>(i), 1);
-    const FillReport filled =
-        generator.fill(candidate, from, end, segment.sentence, segment.hits, generate, &times);
+    const FillReport filled = generator.fill(candidate, from, end, segment.sentence, segment.hits,
+                                             generate, &times, stop_only);
     double score = 0;
     if (options.candidates > 1) {
       Motion piece = generator.decode(candidate.tokens.slice(0, seen, end), generate.held_feet);
@@ -150,7 +167,7 @@ ScriptMotion generate_script(const Generator& generator, const std::vector<Scrip
     const int64_t end = i + 1 == segments.size() ? all_tokens
                                                  : (made.last + tokenizer::kFramesPerToken / 2) /
                                                        tokenizer::kFramesPerToken;
-    fill_segment(generator, canvas, begin, end, segments[i], options, made, result.times);
+    fill_segment(generator, canvas, begin, end, segments[i], options, made, result.times, monitor);
     begin = end;
     monitor.report({"generate", static_cast<double>(i + 1), static_cast<double>(segments.size()),
                     segments[i].sentence});

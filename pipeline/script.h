@@ -11,19 +11,6 @@
 
 namespace remomask::pipeline {
 
-/// A sentence of a script.
-struct ScriptLine {
-  std::string sentence;
-  std::optional<double> seconds;  ///< 1 .. 600
-  long line = 0;                  ///< in the file, from 1
-};
-
-/// Reads a script: a line "SECONDS  sentence" or "sentence" each; empty lines, and what
-/// follows a # at the beginning of a line or after a blank, are passed over. A line
-/// that begins with a number begins with its seconds. Throws FileError with the
-/// line for seconds out of range or without a sentence, and for a script without any.
-std::vector<ScriptLine> parse_script(std::string_view text, const std::string& path);
-
 struct ScriptSegment {
   std::string sentence;
   std::vector<RetrievedMotion> hits;

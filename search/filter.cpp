@@ -8,11 +8,23 @@
 
 #include "remomask/error.h"
 
+namespace remomask {
+
+bool ClipFilter::empty() const {
+  return splits.empty() && labels.empty() && tags.empty() && licences.empty() && !min_seconds &&
+         !max_seconds && !min_speed && !max_speed && caption_query.empty() &&
+         excluded_groups.empty() && excluded_clips.empty() && !exclude_mirrored;
+}
+
+double clip_seconds(const ClipInfo& clip) {
+  return clip.frames / skeleton_named(clip.skeleton).fps;
+}
+
+}  // namespace remomask
+
 namespace remomask::search {
 
 namespace {
-
-constexpr double kClipFramesPerSecond = 20;  // of Clip::frames
 
 const nlohmann::json* find_label(const nlohmann::json& labels, const std::string& key) {
   if (!labels.is_object()) return nullptr;
@@ -114,14 +126,6 @@ LabelCondition parse_label_condition(const std::string& text) {
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
-
-bool ClipFilter::empty() const {
-  return splits.empty() && labels.empty() && tags.empty() && licences.empty() && !min_seconds &&
-         !max_seconds && !min_speed && !max_speed && caption_query.empty() &&
-         excluded_groups.empty() && excluded_clips.empty() && !exclude_mirrored;
-}
-
-double clip_seconds(const db::Clip& clip) { return clip.frames / kClipFramesPerSecond; }
 
 std::vector<int64_t> matching_clips(const db::Database& database, const ClipFilter& filter) {
   const db::ReadSnapshot snapshot(database);

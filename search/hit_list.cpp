@@ -84,8 +84,8 @@ class HitList {
 
  private:
   bool is_refused(const MotionHit& hit) const {
-    return (query_.least_similarity && hit.similarity < *query_.least_similarity) ||
-           (query_.least_probability && hit.probability < *query_.least_probability);
+    return (query_.min_similarity && hit.similarity < *query_.min_similarity) ||
+           (query_.min_probability && hit.probability < *query_.min_probability);
   }
 
   const SearchScene& scene_;

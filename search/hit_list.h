@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "remomask/search.h"
 #include "search/query.h"
-#include "search/search_answer.h"
 #include "search/search_scene.h"
 
 namespace remomask::search {

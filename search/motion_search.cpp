@@ -51,15 +51,15 @@ Error no_word(const std::string& text) {
 
 struct MotionSearch::Impl {
   std::string index_path;
-  retriever::Retriever retriever;
+  std::shared_ptr<const retriever::Retriever> retriever;
   mutable std::mutex mutex;  // of all that follows
   mutable db::Database database;
   mutable std::shared_ptr<SearchState> state;
 
-  Impl(const std::string& model_path, const std::string& database_file,
+  Impl(std::shared_ptr<const retriever::Retriever> shared, const std::string& database_file,
        const std::string& index_file)
       : index_path(index_file.empty() ? index::default_index_path(database_file) : index_file),
-        retriever(nn::load_stage(model_path, "retriever")),
+        retriever(std::move(shared)),
         database(database_file, db::OpenMode::read_only) {
     const db::ReadSnapshot snapshot(database);
     read_state();
@@ -67,7 +67,7 @@ struct MotionSearch::Impl {
 
   void read_state() const {
     state = std::make_shared<SearchState>(
-        index::VectorIndex::open(index_path, database, retriever.hash()), database.clips());
+        index::VectorIndex::open(index_path, database, retriever->hash()), database.clips());
   }
 
   void refresh() const {
@@ -122,11 +122,11 @@ struct MotionSearch::Impl {
     SearchScene scene;
     if (need == Need::bodies && !state->bodies) {
       state->bodies = std::make_shared<index::VectorTable>(
-          index::VectorTable::of_bodies(database.embeddings(retriever.hash())));
+          index::VectorTable::of_bodies(database.embeddings(retriever->hash())));
     }
     if (need == Need::captions && !state->captions) {
       state->captions = std::make_shared<index::VectorTable>(
-          index::VectorTable::of_captions(database.embeddings(retriever.hash())));
+          index::VectorTable::of_captions(database.embeddings(retriever->hash())));
     }
     scene.state = state;
     scene.bodies = state->bodies;
@@ -134,13 +134,13 @@ struct MotionSearch::Impl {
     scene.allowed = allowed_clips(query, sentence);
     scene.boosted = boosted_clips(query.boost_words);
     if (!query.motion && query.like_clip.empty()) scene.calibration = calibration();
-    if (query.least_probability && !scene.calibration) {
+    if (query.min_probability && !scene.calibration) {
       throw Error(database.path() +
                   ": has no calibration of this retriever, so that nothing is known of "
                   "probabilities; run: remomask evaluate calibration --db DB --store");
     }
     if (!query.like_clip.empty()) {
-      scene.like = database.embedding(retriever.hash(), stored_clip(query.like_clip));
+      scene.like = database.embedding(retriever->hash(), stored_clip(query.like_clip));
       if (!scene.like) {
         throw Error(database.path() + ": clip '" + query.like_clip +
                     "' has no vectors of this retriever; run: remomask index DB");
@@ -150,14 +150,14 @@ struct MotionSearch::Impl {
   }
 
   std::optional<Calibration> calibration() const {
-    const auto text = database.fact(calibration_fact(retriever.hash()));
+    const auto text = database.fact(calibration_fact(retriever->hash()));
     if (!text) return std::nullopt;
     return parse_calibration(nlohmann::json::parse(*text, nullptr, false));
   }
 
   /// [E] of one caption.
   std::vector<float> text_vector(const std::string& text) const {
-    return numbers(retriever.encode_text({text::normalise_prompt(text)}).query[0]);
+    return numbers(retriever->encode_text({text::normalise_prompt(text)}).query[0]);
   }
 
   db::ClipEmbedding motion_vectors(const Motion& motion) const {
@@ -169,13 +169,13 @@ struct MotionSearch::Impl {
           motion.frames / fps, kLeastQueryFrames / fps, kMostQueryFrames / fps));
     }
     const motion::Features features =
-        motion::extract_features_all_frames(motion, humanml_skeleton(), retriever.feature_mode());
-    const retriever::MotionEncoding encoding = retriever.encode_motion({&features});
+        motion::extract_features_all_frames(motion, humanml_skeleton(), retriever->feature_mode());
+    const retriever::MotionEncoding encoding = retriever->encode_motion({&features});
     return {0, numbers(encoding.global[0]), numbers(encoding.parts[0]), {}};
   }
 
   /// The motion of a hit; nothing when the clip was removed meanwhile.
-  std::optional<Motion> hit_motion(const db::Clip& clip) const {
+  std::optional<Motion> hit_motion(const ClipInfo& clip) const {
     const std::scoped_lock lock(mutex);
     const db::ReadSnapshot snapshot(database);
     if (database.find_name(clip.name) != clip.id) return std::nullopt;
@@ -190,10 +190,10 @@ struct MotionSearch::Impl {
       if (!motion) continue;
       const Skeleton& skeleton = skeleton_named(hits[i].clip.skeleton);
       const motion::Features features =
-          motion::extract_features_all_frames(*motion, skeleton, retriever.feature_mode());
+          motion::extract_features_all_frames(*motion, skeleton, retriever->feature_mode());
       const auto windows = moment_windows(features.frames);
       const auto found =
-          best_moments(vector, windows, encode_moments(retriever, features, windows));
+          best_moments(vector, windows, encode_moments(*retriever, features, windows));
       if (found.empty()) continue;
       const Moment& best = found.front();
       hits[i].moment = {best.window.first / skeleton.fps, best.window.last / skeleton.fps,
@@ -214,9 +214,13 @@ struct MotionSearch::Impl {
   }
 };
 
+MotionSearch::MotionSearch(std::shared_ptr<const retriever::Retriever> retriever,
+                           const std::string& database_path, const std::string& index_path)
+    : impl_(std::make_unique<Impl>(std::move(retriever), database_path, index_path)) {}
 MotionSearch::MotionSearch(const std::string& model_path, const std::string& database_path,
                            const std::string& index_path)
-    : impl_(std::make_unique<Impl>(model_path, database_path, index_path)) {}
+    : MotionSearch(std::make_shared<retriever::Retriever>(nn::load_stage(model_path, "retriever")),
+                   database_path, index_path) {}
 MotionSearch::~MotionSearch() = default;
 MotionSearch::MotionSearch(MotionSearch&&) noexcept = default;
 MotionSearch& MotionSearch::operator=(MotionSearch&&) noexcept = default;
@@ -265,6 +269,36 @@ std::vector<CaptionHit> MotionSearch::captions_for(const SearchQuery& query) con
   if (hits.size() > static_cast<size_t>(query.k)) hits.resize(static_cast<size_t>(query.k));
   for (size_t i = 0; i < hits.size(); ++i) hits[i].rank = static_cast<int>(i) + 1;
   return hits;
+}
+
+std::vector<FoundClip> MotionSearch::nearest(const std::vector<float>& query, int k,
+                                             const ClipFilter& filter) const {
+  const std::scoped_lock lock(impl_->mutex);
+  const db::ReadSnapshot snapshot(impl_->database);
+  impl_->refresh();
+  SearchScene scene;
+  scene.state = impl_->state;
+  if (!filter.empty()) scene.allowed = matching_clips(impl_->database, scene.state->clips, filter);
+  SearchQuery hits;
+  hits.k = k;
+  std::vector<FoundClip> result;
+  for (MotionHit& hit : collect_hits(scene, hits, {query, {}}).hits) {
+    auto vectors = impl_->database.embedding(impl_->retriever->hash(), hit.clip.id);
+    // An indexed clip has vectors: index and database are of one state here.
+    if (!vectors) continue;
+    result.push_back({std::move(hit), std::move(vectors->motion), std::move(vectors->text)});
+  }
+  return result;
+}
+
+Motion MotionSearch::motion(int64_t clip_id) const {
+  const std::scoped_lock lock(impl_->mutex);
+  return impl_->database.motion(clip_id);
+}
+
+std::string MotionSearch::database_uuid() const {
+  const std::scoped_lock lock(impl_->mutex);
+  return impl_->database.uuid();
 }
 
 }  // namespace remomask::search

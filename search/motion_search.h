@@ -4,36 +4,51 @@
 #include <string>
 #include <vector>
 
+#include "remomask/search.h"
+#include "retriever/retriever.h"
 #include "search/query.h"
-#include "search/search_answer.h"
 
 namespace remomask::search {
+
+/// A clip that is similar to a sentence, with its vectors.
+struct FoundClip {
+  MotionHit hit;
+  std::vector<float> motion;  ///< global vector [E]
+  std::vector<float> text;    ///< mean of the captions [E]; empty for a clip without captions
+};
 
 /// Search in a motion database: a model's retriever, the database and its index.
 /// Const functions may be called from several threads; they take turns at the
 /// database and work side by side otherwise. Every search sees one state of the
-/// database, and changes that other programs have made since the last one.
+/// database, including changes that other programs made since the last search.
 class MotionSearch {
  public:
-  /// `index_path` empty: beside the database. Throws Error when a file is
-  /// missing or damaged, or when the retriever has not embedded the database.
+  /// `index_path` empty: beside the database. Throws Error if a file is missing or damaged, or
+  /// if the retriever has not embedded the database.
+  MotionSearch(std::shared_ptr<const retriever::Retriever> retriever,
+               const std::string& database_path, const std::string& index_path = "");
+  /// The same with the retriever of a model file.
   MotionSearch(const std::string& model_path, const std::string& database_path,
                const std::string& index_path = "");
   ~MotionSearch();
   MotionSearch(MotionSearch&&) noexcept;
   MotionSearch& operator=(MotionSearch&&) noexcept;
 
-  /// The best clips. With `like_clip`, that clip is left out, and its group too
-  /// where hits are grouped; unwanted words leave out clips one of whose captions
-  /// has such a word (by its stem). Exact, but for approximate index types, which
-  /// only serve queries without filter, words and body parts. Throws Error for
-  /// bad queries.
+  /// See TextToMotion::search().
   SearchAnswer search(const SearchQuery& query) const;
 
-  /// Motion to text: the captions of the 50 clips whose mean text vectors are
-  /// nearest to the motion (`motion` or `like_clip` of the query, `filter`),
-  /// the `k` best by their own cosine. Equal captions are listed once.
+  /// See TextToMotion::captions_for().
   std::vector<CaptionHit> captions_for(const SearchQuery& query) const;
+
+  /// The `k` clips most similar to a vector of the retriever's space [E], one of each group, best
+  /// first.
+  std::vector<FoundClip> nearest(const std::vector<float>& query, int k,
+                                 const ClipFilter& filter) const;
+
+  /// The joints of a stored clip. Throws Error for a clip that is not there.
+  Motion motion(int64_t clip_id) const;
+  /// UUID of the database.
+  std::string database_uuid() const;
 
  private:
   struct Impl;

@@ -73,10 +73,10 @@ void check_query(const SearchQuery& query) {
     throw Error("body parts are compared with those of a motion; give one (--like, --like-clip)");
   }
   parse_body_parts(query.parts);
-  if (query.least_probability) {
-    if (!(*query.least_probability >= 0 && *query.least_probability <= 1)) {
+  if (query.min_probability) {
+    if (!(*query.min_probability >= 0 && *query.min_probability <= 1)) {
       throw Error(fmt::format("{:g} is no probability; it is a number from 0 to 1",
-                              *query.least_probability));
+                              *query.min_probability));
     }
     if (moving) {
       throw Error("probabilities are known of sentences alone; limit the similarity instead");

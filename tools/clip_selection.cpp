@@ -47,7 +47,7 @@ int64_t find_clip(const db::Database& database, const std::string& name_or_id) {
 nlohmann::json parse_labels(const std::vector<std::string>& pairs) {
   nlohmann::json labels = nlohmann::json::object();
   for (const std::string& pair : pairs) {
-    const search::LabelCondition label = search::parse_label_condition(pair);
+    const LabelCondition label = search::parse_label_condition(pair);
     const auto value = nlohmann::json::parse(label.value, nullptr, false);
     labels[label.key] = value.is_discarded() ? nlohmann::json(label.value) : value;
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "search/filter.h"
 #include "tools/workspace.h"
 
 namespace remomask::tools {

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "formats/motion_file.h"
+#include "remomask/motion_file.h"
 #include "tools/program.h"
 
 namespace remomask::tools {
@@ -9,7 +9,7 @@ void register_convert(CLI::App& app, Program& program) {
   struct Options {
     std::string input, output, up_axis;
     double metres_per_unit = 0;
-    formats::MotionFileOptions file;
+    MotionFileOptions file;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
@@ -26,8 +26,8 @@ void register_convert(CLI::App& app, Program& program) {
   command->callback([options, &program] {
     if (!options->up_axis.empty()) options->file.up_axis = options->up_axis[0];
     if (options->metres_per_unit > 0) options->file.metres_per_unit = options->metres_per_unit;
-    const formats::LoadedMotion loaded = formats::load_motion_file(options->input, options->file);
-    formats::save_motion_file(options->output, loaded.motion);
+    const LoadedMotion loaded = load_motion(options->input, options->file);
+    save_motion(options->output, loaded.motion);
     if (program.json) {
       return program.print_json({{"output", options->output},
                                  {"frames", loaded.motion.frames},

@@ -22,7 +22,7 @@ nlohmann::json describe_database(const std::string& path) {
     ++licences[clip.licence];
     for (const std::string& tag : clip.tags) ++tags[tag];
     captions += clip.captions.size();
-    seconds += search::clip_seconds(clip);
+    seconds += clip_seconds(clip);
   }
   std::map<std::string, size_t> embedded;
   for (const std::string& retriever : database.retrievers()) {
@@ -49,7 +49,7 @@ nlohmann::json clip_json(const db::Clip& clip) {
           {"source_file", clip.source_file},
           {"start_frame", clip.start_frame},
           {"frames", clip.frames},
-          {"seconds", search::clip_seconds(clip)},
+          {"seconds", clip_seconds(clip)},
           {"speed", clip.speed},
           {"split", clip.split},
           {"licence", clip.licence},

@@ -11,8 +11,8 @@ namespace {
 void print_clip_line(const db::Clip& clip) {
   std::string tags;
   for (const std::string& tag : clip.tags) tags += " [" + tag + "]";
-  fmt::print("{:6}  {:5.1f} s  {:4.1f} m/s  {:<5}  {:<32}{} {}\n", clip.id,
-             search::clip_seconds(clip), clip.speed, clip.split, clip.name, tags,
+  fmt::print("{:6}  {:5.1f} s  {:4.1f} m/s  {:<5}  {:<32}{} {}\n", clip.id, clip_seconds(clip),
+             clip.speed, clip.split, clip.name, tags,
              clip.captions.empty() ? "" : clip.captions.front());
 }
 

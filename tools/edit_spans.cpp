@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "remomask/error.h"
-#include "search/query.h"
 
 namespace remomask::tools {
 
@@ -40,12 +39,12 @@ int parse_time(std::string_view text, const std::string& span, int frames) {
   return static_cast<int>(std::lround(seconds * kEditFps));
 }
 
-pipeline::EditSpan parse_span(const std::string& text, int frames) {
+EditSpan parse_span(const std::string& text, int frames) {
   const size_t dash = text.find('-', 1);
   if (dash == std::string::npos) {
     throw Error(fmt::format("span \"{}\" has no end; write BEGIN-END in seconds", text));
   }
-  pipeline::EditSpan span;
+  EditSpan span;
   span.first = parse_time(std::string_view(text).substr(0, dash), text, frames);
   span.last = parse_time(std::string_view(text).substr(dash + 1), text, frames);
   if (span.first < 0 || span.last > frames || span.first >= span.last) {
@@ -56,8 +55,8 @@ pipeline::EditSpan parse_span(const std::string& text, int frames) {
   return span;
 }
 
-void add_spans(const std::string& text, const std::vector<int>& parts, int frames,
-               std::vector<pipeline::EditSpan>& result) {
+void add_spans(const std::string& text, const std::vector<std::string>& parts, int frames,
+               std::vector<EditSpan>& result) {
   for (const std::string& item : split_list(text, ',')) {
     result.push_back(parse_span(item, frames));
     result.back().parts = parts;
@@ -66,23 +65,21 @@ void add_spans(const std::string& text, const std::vector<int>& parts, int frame
 
 }  // namespace
 
-std::vector<pipeline::EditSpan> parse_edit_spans(const std::string& spans,
-                                                 const std::vector<std::string>& parts,
-                                                 const std::vector<std::string>& cells,
-                                                 int frames) {
-  std::vector<pipeline::EditSpan> result;
-  const std::vector<int> chosen = search::parse_body_parts(parts);
+std::vector<EditSpan> parse_edit_spans(const std::string& spans,
+                                       const std::vector<std::string>& parts,
+                                       const std::vector<std::string>& cells, int frames) {
+  std::vector<EditSpan> result;
   if (!spans.empty()) {
-    add_spans(spans, chosen, frames, result);
-  } else if (!chosen.empty()) {
-    result.push_back({0, frames, chosen});
+    add_spans(spans, parts, frames, result);
+  } else if (!parts.empty()) {
+    result.push_back({0, frames, parts});
   }
   for (const std::string& cell : cells) {
     const size_t colon = cell.find(':');
     const std::vector<std::string> named = colon == std::string::npos
                                                ? std::vector<std::string>()
                                                : split_list(cell.substr(colon + 1), ',');
-    add_spans(cell.substr(0, colon), search::parse_body_parts(named), frames, result);
+    add_spans(cell.substr(0, colon), named, frames, result);
   }
   return result;
 }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/editing.h"
+#include "remomask/generation.h"
 
 namespace remomask::tools {
 
@@ -13,8 +13,8 @@ namespace remomask::tools {
 /// the whole body. `cells`: "A-B:part,part ..." each, with spans of their own. Frames are
 /// those nearest to the times. Throws Error that quotes what cannot be read, and for spans that
 /// are empty or outside of the motion.
-std::vector<pipeline::EditSpan> parse_edit_spans(const std::string& spans,
-                                                 const std::vector<std::string>& parts,
-                                                 const std::vector<std::string>& cells, int frames);
+std::vector<EditSpan> parse_edit_spans(const std::string& spans,
+                                       const std::vector<std::string>& parts,
+                                       const std::vector<std::string>& cells, int frames);
 
 }  // namespace remomask::tools

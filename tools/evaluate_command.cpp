@@ -3,6 +3,7 @@
 #include "db/database.h"
 #include "evaluation/retrieval_metrics.h"
 #include "remomask/error.h"
+#include "remomask/library.h"
 
 namespace remomask::tools {
 

@@ -1,10 +1,15 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 
+#include "db/database.h"
 #include "evaluation/generation_report.h"
+#include "index/vector_index.h"
+#include "nn/model_file.h"
 #include "pipeline/motion_embedding.h"
-#include "pipeline/motion_generator.h"
+#include "remomask/text_to_motion.h"
 #include "tools/evaluate_command.h"
 #include "tools/generation_options.h"
 #include "tools/workspace.h"
@@ -12,6 +17,8 @@
 namespace remomask::tools {
 
 namespace {
+
+constexpr double kMaxEvaluatedSeconds = 9.8;  // what the transformers see at once
 
 struct EvaluateGenerationOptions {
   FileOptions files;
@@ -40,7 +47,7 @@ void print_row(const evaluation::GenerationSubset& subset, const char* name,
 
 void print_body(const evaluation::GenerationSubset& subset, const char* name,
                 const evaluation::MotionFigures& figures) {
-  const pipeline::PhysicalMetrics& body = figures.physical.values;
+  const PhysicalMetrics& body = figures.physical.values;
   const auto side = [](const evaluation::SideCount& count) {
     return count.asked == 0 ? std::string("-") : fmt::format("{} of {}", count.right, count.asked);
   };
@@ -87,26 +94,33 @@ void print_report(const evaluation::GenerationReport& report) {
 
 void evaluate_generation(const EvaluateGenerationOptions& options, Program& program) {
   const std::string model_path = options.files.model_path();
-  const auto stages = nn::load_model(model_path);
   const evaluation::Evaluator evaluator = options.evaluator.load();
-  const GenerationWorkspace workspace(stages, model_path, options.files, options.generation);
-  const db::Database& database = workspace.search().database();
-  workspace.search().index().require_current(database);
-  const auto judge =
-      options.judge == "evaluator"
-          ? evaluation::evaluator_judge(evaluator, database)
-          : evaluation::retriever_judge(workspace.search().index(), [&](const Motion& motion) {
-              return pipeline::embed_motion(workspace.search().retriever(), motion);
-            });
+  OpenOptions open;
+  open.index = options.files.index;
+  open.threads = program.threads;
+  const TextToMotion remomask(model_path, options.files.database_path(), open);
+  const db::Database database(options.files.database_path(), db::OpenMode::read_only);
+  const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
+  const auto index =
+      index::VectorIndex::open(options.files.index_path(), database, retriever.hash());
+  index.require_current(database);
+  const auto judge = options.judge == "evaluator"
+                         ? evaluation::evaluator_judge(evaluator, database)
+                         : evaluation::retriever_judge(index, [&](const Motion& motion) {
+                             return pipeline::embed_motion(retriever, motion);
+                           });
+  const GenerateOptions chosen = options.generation.chosen();
   const auto generate = [&](const evaluation::LabelPrompt& prompt) {
+    GenerateOptions one = chosen;
+    one.seed = prompt.seed;
+    if (prompt.frames > 0) one.seconds = std::min(prompt.frames / 20.0, kMaxEvaluatedSeconds);
     // Evidence comes from training clips alone, never from the prompt's own motion.
-    search::ClipFilter evidence;
-    evidence.splits = {"train"};
-    evidence.excluded_groups = {prompt.group};
-    return workspace.generate(prompt.text, prompt.seed, evidence, prompt.frames).generated.motion;
+    one.evidence.splits = {"train"};
+    one.evidence.excluded_groups = {prompt.group};
+    return remomask.generate(prompt.text, one).motion;
   };
   evaluation::GenerationRunOptions run_options = options.run;
-  run_options.generator = workspace.identity();
+  run_options.generator = remomask.identity(chosen);
   const evaluation::JudgeGallery gallery(database, *judge, run_options.gallery_splits);
   const evaluation::GenerationRun run = evaluation::run_generation(
       database, gallery, *judge, evaluator, generate, run_options, program.monitor());

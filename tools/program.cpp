@@ -146,21 +146,4 @@ void add_repeatable(CLI::App& command, const std::string& name, std::vector<std:
   command.add_option(name, values, description + " (repeatable)")->allow_extra_args(false);
 }
 
-std::string shipped_file(const std::string& name) {
-  namespace fs = std::filesystem;
-  std::vector<fs::path> folders;
-  if (const char* chosen = std::getenv("REMOMASK_MODELS")) folders.emplace_back(chosen);
-  std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  folders.push_back(program / "models");
-  folders.push_back(program / ".." / "share" / "remomask");
-  folders.emplace_back(REMOMASK_SOURCE_MODELS);
-  for (const fs::path& folder : folders) {
-    if (fs::exists(folder / name, ignored)) return (folder / name).string();
-  }
-  throw Error("the shipped file \"" + name +
-              "\" was not found; set REMOMASK_MODELS to the folder that holds it, or name a file "
-              "with --model / --db");
-}
-
 }  // namespace remomask::tools

@@ -57,9 +57,4 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
 void add_repeatable(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                     const std::string& description);
 
-/// Path of a file that is shipped in models/: $REMOMASK_MODELS, beside the
-/// program, or the source tree it was built from. Throws Error when it is in
-/// none of them.
-std::string shipped_file(const std::string& name);
-
 }  // namespace remomask::tools

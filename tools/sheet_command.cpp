@@ -4,27 +4,20 @@
 
 #include "base/file.h"
 #include "drawing/contact_sheet.h"
-#include "formats/motion_file.h"
 #include "remomask/error.h"
+#include "remomask/motion_file.h"
+#include "tools/evidence_text.h"
 #include "tools/program.h"
-#include "tools/workspace.h"
 
 namespace remomask::tools {
 
 namespace {
 
-/// Title and subtitle of a row: prompt and retrieved clips where the motion was
-/// generated (FILE.json beside it), else the name of the file.
+/// Sentence and retrieved clips where the motion was generated, else the name of the file.
 void label_row(const std::string& path, drawing::SheetRow& row) {
-  row.title = std::filesystem::path(path).filename().string();
-  if (!std::filesystem::exists(path + ".json")) return;
-  try {
-    const auto stored = nlohmann::json::parse(read_file(path + ".json"));
-    row.title = stored.at("prompt").get<std::string>();
-    row.subtitle = evidence_line(nlohmann::json::parse(stored.at("evidence").get<std::string>()));
-  } catch (const nlohmann::json::exception& error) {
-    throw FileError(path + ".json", 0, std::string("is not what generate writes: ") + error.what());
-  }
+  const SidecarText text = read_sidecar_text(path);
+  row.title = text.title.empty() ? std::filesystem::path(path).filename().string() : text.title;
+  row.subtitle = text.subtitle;
 }
 
 }  // namespace
@@ -53,7 +46,7 @@ void register_sheet(CLI::App& app, Program& program) {
       drawing::SheetRow row;
       label_row(options->inputs[i], row);
       if (i < options->titles.size()) row.title = options->titles[i];
-      row.motion = formats::load_motion_file(options->inputs[i]).motion;
+      row.motion = load_motion(options->inputs[i]).motion;
       rows.push_back(row);
     }
     drawing::write_contact_sheet(options->output, rows, options->sheet);

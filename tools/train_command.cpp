@@ -64,20 +64,8 @@ training::TrainingRecipe chosen_recipe(const TrainOptions& options) {
   return recipe;
 }
 
-training::TrainingSplits load_splits(const TrainOptions& options) {
-  const db::Database database(options.database, db::OpenMode::read_only);
-  const auto load = [&](const std::string& split) {
-    db::TrainingSetOptions set;
-    set.splits = {split};
-    set.sources = options.sources;
-    set.add_mirrored = split == "train";
-    auto clips = db::load_training_set(database, set);
-    if (clips.empty()) {
-      throw FileError(options.database, 0, "has no clips of split \"" + split + "\"");
-    }
-    return clips;
-  };
-  training::TrainingSplits splits{load("train"), load("val"), {}};
+training::TrainingSplits load_clips(const TrainOptions& options) {
+  training::TrainingSplits splits = training::load_splits(options.database, options.sources);
   for (const std::string& path : options.captions) read_more_captions(path, splits.more_captions);
   return splits;
 }
@@ -101,7 +89,7 @@ void train_judge(const TrainOptions& options, const training::TrainingSplits& cl
 }
 
 void run_training(const TrainOptions& options, Program& program) {
-  const training::TrainingSplits clips = load_splits(options);
+  const training::TrainingSplits clips = load_clips(options);
   const training::StageFile file = [&](const std::string& stage) {
     return (fs::path(options.folder) / (stage + ".safetensors")).string();
   };

@@ -1,10 +1,10 @@
 #include "tools/workspace.h"
 
-#include <fmt/format.h>
-
 #include "db/captions_index.h"
+#include "index/vector_index.h"
 #include "remomask/error.h"
-#include "search/hit_list.h"
+#include "remomask/library.h"
+#include "search/filter.h"
 
 namespace remomask::tools {
 
@@ -47,8 +47,8 @@ void FilterOptions::add(CLI::App& command) {
       ->excludes(plain);
 }
 
-search::ClipFilter FilterOptions::filter() const {
-  search::ClipFilter result;
+ClipFilter FilterOptions::filter() const {
+  ClipFilter result;
   result.splits = splits;
   for (const std::string& label : labels)
     result.labels.push_back(search::parse_label_condition(label));
@@ -74,60 +74,6 @@ const nn::ModelStage& require_stage(const std::map<std::string, nn::ModelStage>&
   throw FileError(model_path, 0,
                   "holds no " + kind + " (it holds: " + held +
                       "); train it with \"remomask train " + kind + "\"");
-}
-
-SearchWorkspace::SearchWorkspace(const std::map<std::string, nn::ModelStage>& stages,
-                                 const std::string& model_path, const std::string& database_path,
-                                 const std::string& index_path)
-    : retriever_(require_stage(stages, "retriever", model_path)),
-      database_(database_path, db::OpenMode::read_only) {
-  const db::ReadSnapshot snapshot(database_);
-  state_ = std::make_shared<search::SearchState>(
-      index::VectorIndex::open(index_path, database_, retriever_.hash()), database_.clips());
-}
-
-std::vector<search::MotionHit> SearchWorkspace::search(const std::string& text, int k,
-                                                       const search::ClipFilter& filter) const {
-  search::SearchScene scene;
-  scene.state = state_;
-  if (!filter.empty()) scene.allowed = search::matching_clips(database_, state_->clips, filter);
-  search::SearchQuery query;
-  query.k = k;
-  return search::collect_hits(scene, query, {text_vector(retriever_, text), {}}).hits;
-}
-
-std::vector<float> text_vector(const retriever::Retriever& retriever, const std::string& text) {
-  const at::Tensor query = retriever.encode_text({text}).query.contiguous();
-  return {query.data_ptr<float>(), query.data_ptr<float>() + query.numel()};
-}
-
-nlohmann::json hit_json(const search::MotionHit& hit) {
-  return {{"rank", hit.rank},
-          {"clip_id", hit.clip.id},
-          {"clip", hit.clip.name},
-          {"similarity", hit.similarity},
-          {"captions", hit.clip.captions},
-          {"source", hit.clip.source},
-          {"licence", hit.clip.licence},
-          {"split", hit.clip.split},
-          {"seconds", search::clip_seconds(hit.clip)}};
-}
-
-nlohmann::json hits_json(const std::vector<search::MotionHit>& hits) {
-  nlohmann::json list = nlohmann::json::array();
-  for (const search::MotionHit& hit : hits) list.push_back(hit_json(hit));
-  return list;
-}
-
-std::string evidence_line(const nlohmann::json& hits) {
-  std::string line;
-  for (const auto& hit : hits) {
-    if (!hit.value("read", true)) continue;
-    line += (line.empty() ? "retrieved: " : ", ") + fmt::format("{} ({:.2f})",
-                                                                hit.at("clip").get<std::string>(),
-                                                                hit.at("similarity").get<double>());
-  }
-  return line;
 }
 
 }  // namespace remomask::tools

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "db/database.h"
 #include "nn/model_file.h"
 #include "pipeline/stage_gate.h"
 #include "remomask/error.h"
@@ -39,6 +40,23 @@ nn::ModelStage trained_retriever(const TrainingRecipe& recipe, const std::string
 }
 
 }  // namespace
+
+TrainingSplits load_splits(const std::string& database_path,
+                           const std::vector<std::string>& sources) {
+  const db::Database database(database_path, db::OpenMode::read_only);
+  const auto load = [&](const std::string& split) {
+    db::TrainingSetOptions set;
+    set.splits = {split};
+    set.sources = sources;
+    set.add_mirrored = split == "train";
+    auto clips = db::load_training_set(database, set);
+    if (clips.empty()) {
+      throw FileError(database_path, 0, "has no clips of split \"" + split + "\"");
+    }
+    return clips;
+  };
+  return {load("train"), load("val"), {}};
+}
 
 const GeneratorData& GeneratorDataCache::get(const std::string& tokenizer_file,
                                              const std::string& retriever_file,

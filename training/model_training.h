@@ -16,6 +16,11 @@ struct TrainingSplits {
   std::vector<std::string> more_captions;  ///< for the text stage besides those of `train`
 };
 
+/// Reads the splits "train" (with mirror twins) and "val" of a database; `sources`: only these
+/// data sets, all if empty. Throws FileError if a split has no clips.
+TrainingSplits load_splits(const std::string& database_path,
+                           const std::vector<std::string>& sources = {});
+
 /// Keeps what prepare_generator_data() made of the last pair of tokenizer and
 /// retriever: several transformers may be trained on it.
 class GeneratorDataCache {

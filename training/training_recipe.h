@@ -24,7 +24,7 @@ struct TrainingRecipe {
   RetrieverTrainingOptions retriever_training;
   TokenizerTrainingOptions tokenizer_training;
   TransformerTrainingOptions masked_training, residual_training;
-  generator::SamplingOptions sampling;
+  SamplingOptions sampling;
 };
 
 /// The recipe of a preset (presets.h). Throws Error for an unknown name.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "remomask/export.h"
 #include "remomask/skeleton.h"
 
 namespace remomask {
@@ -34,6 +35,6 @@ struct Motion {
 };
 
 /// Frames [first, last) of a motion. Throws Error for frames outside of it.
-Motion slice(const Motion& motion, int first, int last);
+REMOMASK_API Motion slice(const Motion& motion, int first, int last);
 
 }  // namespace remomask

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "remomask/export.h"
+
 namespace remomask {
 
 /// A joint hierarchy with everything that the 263-d (12 J - 1) features need.
@@ -28,10 +30,10 @@ struct Skeleton {
 };
 
 /// 22 SMPL joints of HumanML3D; bone lengths of its uniform skeleton.
-const Skeleton& humanml_skeleton();
+REMOMASK_API const Skeleton& humanml_skeleton();
 /// 21 joints of KIT-ML.
-const Skeleton& kit_skeleton();
+REMOMASK_API const Skeleton& kit_skeleton();
 /// "humanml3d" or "kit". Throws Error for another name.
-const Skeleton& skeleton_named(const std::string& name);
+REMOMASK_API const Skeleton& skeleton_named(const std::string& name);
 
 }  // namespace remomask

@@ -7,7 +7,7 @@
 
 #include "base/file.h"
 #include "exchange/import.h"
-#include "formats/motion_file.h"
+#include "remomask/motion_file.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
@@ -104,8 +104,8 @@ TEST(Archive, RefusesDamageAndDoubledNames) {
 TEST(Archive, ImportsLikeTheFolderInIt) {
   TestFolder folder;
   std::filesystem::create_directory(folder / "walks");
-  formats::save_motion_file(folder / "walks/a.npy", walking_motion(30, 1));
-  formats::save_motion_file(folder / "walks/b.npy", walking_motion(30, 2));
+  save_motion(folder / "walks/a.npy", walking_motion(30, 1));
+  save_motion(folder / "walks/b.npy", walking_motion(30, 2));
   write_file_atomically(folder / "walks.jsonl",
                         R"({"clip": "a", "captions": ["one"], "split": "train"})"
                         "\n"

@@ -4,7 +4,7 @@
 
 #include "exchange/add_files.h"
 #include "exchange/import.h"
-#include "formats/motion_file.h"
+#include "remomask/motion_file.h"
 #include "synthetic/procedural.h"
 #include "tests/db/db_test_tools.h"
 
@@ -96,9 +96,9 @@ TEST_F(ExportTest, WritesTheChosenClipsAndMixesNothingUp) {
 
 TEST_F(ExportTest, SingleFilesAreAdded) {
   std::filesystem::create_directory(folder_ / "files");
-  formats::save_motion_file(folder_ / "files/new.npy", database_.motion(ids_[0]));
-  formats::save_motion_file(folder_ / "files/long.bvh", walking_motion(500, 8));
-  formats::save_motion_file(folder_ / "files/short.npy", walking_motion(5, 8));
+  save_motion(folder_ / "files/new.npy", database_.motion(ids_[0]));
+  save_motion(folder_ / "files/long.bvh", walking_motion(500, 8));
+  save_motion(folder_ / "files/short.npy", walking_motion(5, 8));
   db::Database again(folder_ / "again", db::OpenMode::create);
   exchange::AddOptions options;
   options.captions = {"a formula"};

@@ -9,8 +9,8 @@
 
 #include "base/file.h"
 #include "db/sqlite.h"
-#include "formats/motion_file.h"
 #include "motion/canonical.h"
+#include "remomask/motion_file.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
@@ -32,8 +32,8 @@ exchange::ImportOptions make_walks(const TestFolder& folder, int count,
   std::string lines;
   for (int i = 0; i < count; ++i) {
     const std::string name = "walk_" + std::to_string(1000 + i);
-    formats::save_motion_file(folder / ((i % 3 ? "walks/" : "walks/deeper/") + name + extension),
-                              walking_motion(24 + i % 5, i));
+    save_motion(folder / ((i % 3 ? "walks/" : "walks/deeper/") + name + extension),
+                walking_motion(24 + i % 5, i));
     lines += caption_line(name, i % 4 ? "train" : "test", {{"content", "walk"}, {"number", i}});
   }
   write_file_atomically(folder / "walks.jsonl", lines);
@@ -50,7 +50,7 @@ bool any_contains(const std::vector<std::string>& texts, const std::string& part
 }
 
 std::string reason_of(const exchange::ImportReport& report, const std::string& file) {
-  for (const exchange::RejectedFile& rejected : report.rejected) {
+  for (const RejectedFile& rejected : report.rejected) {
     if (rejected.file == file) return rejected.reason;
   }
   return "";
@@ -202,9 +202,9 @@ TEST(Import, MalformedCaptionsStopWithTheLine) {
 TEST(Import, RejectedFilesAreNamedWithTheirReason) {
   TestFolder folder;
   const exchange::ImportOptions options = make_walks(folder, 1, ".npy");
-  formats::save_motion_file(folder / "walks/copy.npy", walking_motion(24, 0));
-  formats::save_motion_file(folder / "walks/short.npy", walking_motion(19, 3));
-  formats::save_motion_file(folder / "walks/labels.npy", walking_motion(30, 4));
+  save_motion(folder / "walks/copy.npy", walking_motion(24, 0));
+  save_motion(folder / "walks/short.npy", walking_motion(19, 3));
+  save_motion(folder / "walks/labels.npy", walking_motion(30, 4));
   write_file_atomically(folder / "walks/stranger.bvh",
                         "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition "
                         "Zposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame "
@@ -246,7 +246,7 @@ TEST(Import, LongClipsBecomeWindowsOfOneGroup) {
   TestFolder folder;
   std::filesystem::create_directory(folder / "walks");
   const Motion motion = walking_motion(400, 5);
-  formats::save_motion_file(folder / "walks/long.npy", motion);
+  save_motion(folder / "walks/long.npy", motion);
   write_file_atomically(folder / "captions.jsonl", caption_line("long", "val"));
   exchange::ImportOptions options;
   options.folder = folder / "walks/";
@@ -278,7 +278,7 @@ TEST(Import, LabelsReadTheFileAndFormGroups) {
   std::filesystem::create_directory(folder / "walks");
   const Motion motion = walking_motion(60, 5);
   for (const char* name : {"a", "b", "c"}) {
-    formats::save_motion_file(folder / (std::string("walks/") + name + ".bvh"), motion);
+    save_motion(folder / (std::string("walks/") + name + ".bvh"), motion);
   }
   write_file_atomically(
       folder / "walks.jsonl",
@@ -307,10 +307,10 @@ TEST(Import, LabelsReadTheFileAndFormGroups) {
 TEST(Import, TheSameStemTwiceIsToldApartByThePath) {
   TestFolder folder;
   std::filesystem::create_directories(folder / "walks/x");
-  formats::save_motion_file(folder / "walks/x/a.npy", walking_motion(30, 1));
-  formats::save_motion_file(folder / "walks/a.npy", walking_motion(30, 2));
-  formats::save_motion_file(folder / "walks/x/b.npy", walking_motion(30, 3));
-  formats::save_motion_file(folder / "walks/x/b.bvh", walking_motion(30, 4));
+  save_motion(folder / "walks/x/a.npy", walking_motion(30, 1));
+  save_motion(folder / "walks/a.npy", walking_motion(30, 2));
+  save_motion(folder / "walks/x/b.npy", walking_motion(30, 3));
+  save_motion(folder / "walks/x/b.bvh", walking_motion(30, 4));
   write_file_atomically(
       folder / "walks/captions.jsonl",
       caption_line("x/a", "val") + caption_line("a", "test") + caption_line("x/b", "test"));

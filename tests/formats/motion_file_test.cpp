@@ -1,4 +1,4 @@
-#include "formats/motion_file.h"
+#include "remomask/motion_file.h"
 #include "motion/vector.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "formats/axis_detection.h"
 #include "formats/inverse_kinematics.h"
+#include "formats/motion_writing.h"
 #include "formats/npy.h"
 #include "motion/canonical.h"
 #include "motion/features.h"
@@ -57,10 +58,10 @@ void write_joints(const std::string& path, const Motion& motion) {
 
 TEST(MotionFile, NpyAndBvhRoundTrips) {
   const Motion motion = canonical_walker(60);
-  formats::save_motion_file(temporary("a.npy"), motion);
-  EXPECT_LT(largest_difference(formats::load_motion_file(temporary("a.npy")).motion, motion), 2e-6);
-  formats::save_motion_file(temporary("a.bvh"), motion);
-  const formats::LoadedMotion loaded = formats::load_motion_file(temporary("a.bvh"));
+  save_motion(temporary("a.npy"), motion);
+  EXPECT_LT(largest_difference(load_motion(temporary("a.npy")).motion, motion), 2e-6);
+  save_motion(temporary("a.bvh"), motion);
+  const LoadedMotion loaded = load_motion(temporary("a.bvh"));
   EXPECT_LT(largest_difference(loaded.motion, motion), 1e-3);
   EXPECT_EQ(loaded.skeleton_map, "remomask");
   EXPECT_EQ(loaded.up_axis, 'Y');
@@ -75,15 +76,15 @@ TEST(MotionFile, FeaturesAreRead) {
   const motion::Features f = motion::extract_features_all_frames(motion, humanml_skeleton(),
                                                                  motion::FeatureMode::official);
   write_file_atomically(temporary("f.npy"), formats::format_npy({{60, 263}, f.values}));
-  EXPECT_LT(largest_difference(formats::load_motion_file(temporary("f.npy")).motion, motion), 2e-5);
+  EXPECT_LT(largest_difference(load_motion(temporary("f.npy")).motion, motion), 2e-5);
 }
 
-TEST(MotionFile, MetadataLiesBesideTheFile) {
-  formats::save_motion_file(temporary("m.bvh"), canonical_walker(4),
-                            {{"prompt", "a \"tall\" person\nwaves"}, {"seed", "7"}});
-  const auto fields = nlohmann::json::parse(read_file(temporary("m.bvh.json")));
-  EXPECT_EQ(fields["prompt"], "a \"tall\" person\nwaves");
-  EXPECT_EQ(fields["seed"], "7");
+TEST(MotionFile, TheSidecarLiesBesideTheFileAndNeverOutlivesItsMotion) {
+  const nlohmann::json sidecar = {{"sentence", "a \"tall\" person\nwaves"}, {"frames", 4}};
+  formats::write_motion(temporary("m.bvh"), canonical_walker(4), &sidecar);
+  EXPECT_EQ(nlohmann::json::parse(read_file(temporary("m.bvh.json"))), sidecar);
+  save_motion(temporary("m.bvh"), canonical_walker(5));
+  EXPECT_FALSE(std::filesystem::exists(temporary("m.bvh.json")));
 }
 
 TEST(MotionFile, FindsUnitAndUpAxis) {
@@ -91,7 +92,7 @@ TEST(MotionFile, FindsUnitAndUpAxis) {
   for (const double unit : {1.0, 0.01, 0.001, 0.0254, 0.056444}) {
     for (const char axis : {'X', 'Y', 'Z'}) {
       write_joints(temporary("d.npy"), disguised(motion, unit, axis));
-      const formats::LoadedMotion loaded = formats::load_motion_file(temporary("d.npy"));
+      const LoadedMotion loaded = load_motion(temporary("d.npy"));
       EXPECT_EQ(loaded.up_axis, axis);
       EXPECT_DOUBLE_EQ(loaded.metres_per_unit, unit);
       EXPECT_LT(largest_difference(loaded.motion, motion), 1e-5) << unit << axis;
@@ -102,11 +103,11 @@ TEST(MotionFile, FindsUnitAndUpAxis) {
 TEST(MotionFile, ChoicesOfTheCallerWin) {
   const Motion motion = canonical_walker(60);
   write_joints(temporary("o.npy"), disguised(motion, 0.01, 'Y'));
-  formats::MotionFileOptions options;
+  MotionFileOptions options;
   options.up_axis = 'Z';
   options.metres_per_unit = 0.02;
   options.skip_frames = 5;
-  const formats::LoadedMotion loaded = formats::load_motion_file(temporary("o.npy"), options);
+  const LoadedMotion loaded = load_motion(temporary("o.npy"), options);
   EXPECT_EQ(loaded.up_axis, 'Z');
   EXPECT_DOUBLE_EQ(loaded.metres_per_unit, 0.02);
   EXPECT_EQ(loaded.motion.frames, 55);
@@ -130,7 +131,7 @@ TEST(MotionFile, ResamplesOtherFrameRates) {
   formats::Bvh bvh = formats::motion_to_bvh(canonical_walker(61));
   bvh.frame_time = 1.0 / 120;
   write_file_atomically(temporary("fast.bvh"), formats::format_bvh(bvh));
-  const formats::LoadedMotion loaded = formats::load_motion_file(temporary("fast.bvh"));
+  const LoadedMotion loaded = load_motion(temporary("fast.bvh"));
   EXPECT_EQ(loaded.motion.frames, 11);
   EXPECT_NEAR(loaded.source_fps, 120, 0.1);
 }
@@ -150,56 +151,55 @@ TEST(MotionFile, TakesAMapFileOfTheUser) {
   }
   write_file_atomically(temporary("mine.bvh"), formats::format_bvh(bvh));
   write_file_atomically(temporary("mine.json"), map.dump());
-  EXPECT_THROW(formats::load_motion_file(temporary("mine.bvh")), FileError);
-  formats::MotionFileOptions options;
+  EXPECT_THROW(load_motion(temporary("mine.bvh")), FileError);
+  MotionFileOptions options;
   options.skeleton_map = temporary("mine.json");
-  const formats::LoadedMotion loaded = formats::load_motion_file(temporary("mine.bvh"), options);
+  const LoadedMotion loaded = load_motion(temporary("mine.bvh"), options);
   EXPECT_EQ(loaded.skeleton_map, "mine");
   EXPECT_LT(largest_difference(loaded.motion, canonical_walker(20)), 1e-3);
   options.skeleton_map = "bandai";  // shipped, but of another skeleton
-  EXPECT_THROW(formats::load_motion_file(temporary("mine.bvh"), options), FileError);
+  EXPECT_THROW(load_motion(temporary("mine.bvh"), options), FileError);
   options.skeleton_map = "no such map";
-  EXPECT_THROW(formats::load_motion_file(temporary("mine.bvh"), options), FileError);
+  EXPECT_THROW(load_motion(temporary("mine.bvh"), options), FileError);
 }
 
 TEST(MotionFile, RefusesUnusableFilesAndOptions) {
   const Motion motion = canonical_walker(6);
-  EXPECT_THROW(formats::save_motion_file(temporary("a.fbx"), motion), FileError);
-  EXPECT_THROW(formats::save_motion_file(temporary("no/such/folder/a.npy"), motion), FileError);
-  EXPECT_THROW(formats::save_motion_file(temporary("a.npy"), Motion(3, 21)), Error);
-  EXPECT_THROW(formats::load_motion_file(temporary("absent.bvh")), FileError);
-  EXPECT_THROW(formats::load_motion_file(temporary("a.fbx")), FileError);
+  EXPECT_THROW(save_motion(temporary("a.fbx"), motion), FileError);
+  EXPECT_THROW(save_motion(temporary("no/such/folder/a.npy"), motion), FileError);
+  EXPECT_THROW(save_motion(temporary("a.npy"), Motion(3, 21)), Error);
+  EXPECT_THROW(load_motion(temporary("absent.bvh")), FileError);
+  EXPECT_THROW(load_motion(temporary("a.fbx")), FileError);
   write_file_atomically(temporary("shape.npy"),
                         formats::format_npy({{2, 5}, std::vector<float>(10)}));
-  EXPECT_THROW(formats::load_motion_file(temporary("shape.npy")), FileError);
+  EXPECT_THROW(load_motion(temporary("shape.npy")), FileError);
   Motion broken = motion;
   broken.at(2, 2)[1] = NAN;
   write_joints(temporary("nan.npy"), broken);
-  EXPECT_THROW(formats::load_motion_file(temporary("nan.npy")), FileError);
-  formats::save_motion_file(temporary("b.npy"), motion);
-  formats::MotionFileOptions options;
+  EXPECT_THROW(load_motion(temporary("nan.npy")), FileError);
+  save_motion(temporary("b.npy"), motion);
+  MotionFileOptions options;
   options.skip_frames = 6;
-  EXPECT_THROW(formats::load_motion_file(temporary("b.npy"), options), FileError);
+  EXPECT_THROW(load_motion(temporary("b.npy"), options), FileError);
   options.skip_frames = -1;
-  EXPECT_THROW(formats::load_motion_file(temporary("b.npy"), options), Error);
+  EXPECT_THROW(load_motion(temporary("b.npy"), options), Error);
   options.skip_frames = 0;
   options.up_axis = 'y';
-  EXPECT_THROW(formats::load_motion_file(temporary("b.npy"), options), Error);
+  EXPECT_THROW(load_motion(temporary("b.npy"), options), Error);
   options.up_axis = 'Y';
   options.metres_per_unit = 0;
-  EXPECT_THROW(formats::load_motion_file(temporary("b.npy"), options), Error);
+  EXPECT_THROW(load_motion(temporary("b.npy"), options), Error);
 }
 
 TEST(MotionFile, PlaceAndSizeStayWhereCanonicalIsNotAskedFor) {
   const Motion walk = moved(make_walker(30), 0.8, Vec3(2, 0.5, -3), 1.07);
-  formats::MotionFileOptions as_it_is;
+  MotionFileOptions as_it_is;
   as_it_is.canonical = false;
-  formats::save_motion_file(temporary("placed.npy"), walk);
-  EXPECT_EQ(formats::load_motion_file(temporary("placed.npy"), as_it_is).motion.positions,
-            walk.positions);
-  EXPECT_GT(largest_difference(formats::load_motion_file(temporary("placed.npy")).motion, walk), 1);
-  formats::save_motion_file(temporary("placed.bvh"), walk);
-  const Motion back = formats::load_motion_file(temporary("placed.bvh"), as_it_is).motion;
+  save_motion(temporary("placed.npy"), walk);
+  EXPECT_EQ(load_motion(temporary("placed.npy"), as_it_is).motion.positions, walk.positions);
+  EXPECT_GT(largest_difference(load_motion(temporary("placed.npy")).motion, walk), 1);
+  save_motion(temporary("placed.bvh"), walk);
+  const Motion back = load_motion(temporary("placed.bvh"), as_it_is).motion;
   EXPECT_LT(largest_difference(back, walk), 1e-4);
 }
 

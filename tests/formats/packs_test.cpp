@@ -8,9 +8,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "formats/motion_file.h"
 #include "motion/vector.h"
 #include "remomask/error.h"
+#include "remomask/motion_file.h"
 #include "tests/motion/support.h"
 
 namespace remomask {
@@ -91,13 +91,13 @@ TEST_P(Packs, MapAxisUnitAndRateAgreeWithTheLabels) {
     const nlohmann::json& labels = line["labels"];
     const std::string name = line["clip"];
     const std::string path = folder + "/" + name + ".bvh";
-    formats::MotionFileOptions options;
+    MotionFileOptions options;
     options.skip_frames = labels.value("skip_frames", 0);
     if (name == "importer_sinusoidal") {  // four joints, not a human
-      EXPECT_THROW(formats::load_motion_file(path), FileError);
+      EXPECT_THROW(load_motion(path), FileError);
       continue;
     }
-    const formats::LoadedMotion loaded = formats::load_motion_file(path, options);
+    const LoadedMotion loaded = load_motion(path, options);
     EXPECT_EQ(loaded.skeleton_map,
               own == "labels.skeleton" ? labels["skeleton"].get<std::string>() : own)
         << name;
@@ -109,9 +109,8 @@ TEST_P(Packs, MapAxisUnitAndRateAgreeWithTheLabels) {
     EXPECT_NEAR(loaded.motion.frames, seconds * 20 + 1, 1) << name;
 
     const std::string copy = temporary_folder() + "/copy.bvh";
-    formats::save_motion_file(copy, loaded.motion);
-    EXPECT_LT(largest_difference(formats::load_motion_file(copy).motion, loaded.motion), 1e-3)
-        << name;
+    save_motion(copy, loaded.motion);
+    EXPECT_LT(largest_difference(load_motion(copy).motion, loaded.motion), 1e-3) << name;
   }
 }
 
@@ -129,14 +128,14 @@ TEST(Retarget, TwoSkeletonsOfOneTrialAgree) {
   for (const nlohmann::json& line : lines_of("cmu_alt")) {
     if (!line["labels"].contains("duplicate_of")) continue;
     const std::string twin = line["labels"]["duplicate_of"];
-    formats::MotionFileOptions options;
+    MotionFileOptions options;
     options.skip_frames = line["labels"]["skip_frames"];
     const std::string name = line["clip"];
-    const Motion a = formats::load_motion_file(folder + "/" + name + ".bvh", options).motion;
+    const Motion a = load_motion(folder + "/" + name + ".bvh", options).motion;
     double best = std::numeric_limits<double>::infinity();
     for (int skip = 8; skip < 14; ++skip) {  // six source frames make one at 20 fps
       options.skip_frames = skip;
-      const Motion b = formats::load_motion_file(twins + twin.substr(7) + ".bvh", options).motion;
+      const Motion b = load_motion(twins + twin.substr(7) + ".bvh", options).motion;
       for (int shift = -5; shift <= 5; ++shift) {
         best = std::min(best, mean_distance(a, b, shift));
       }

@@ -128,7 +128,7 @@ TEST(JoinedStack, WithoutDroppedConditionsThereIsNoGuidance) {
   torch::manual_seed(7);
   generator::MaskedTransformer model(joined_masked_config());
   const generator::Condition condition = random_condition(1, 4, 2, 12, 8);
-  generator::SamplingOptions options;
+  SamplingOptions options;
   EXPECT_THROW(generator::sample_base(model, condition, 4, 1, options), Error);
   options.guidance = 1;
   EXPECT_EQ(generator::sample_base(model, condition, 4, 1, options).sizes(),

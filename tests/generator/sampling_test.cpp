@@ -39,7 +39,7 @@ TEST(Sampling, ScheduleOfTenPasses) {
 
 TEST(Sampling, EveryCellGetsACode) {
   SamplerModels models = sampler_models();
-  generator::SamplingOptions options;
+  SamplingOptions options;
   options.correction_rounds = 1;
   options.score_noise = 1;
   const auto base = generator::sample_base(models.masked, models.condition, 7, 5, options);
@@ -55,7 +55,7 @@ TEST(Sampling, EveryCellGetsACode) {
 
 TEST(Sampling, KnownCellsStay) {
   SamplerModels models = sampler_models();
-  generator::SamplingOptions options;
+  SamplingOptions options;
   options.correction_rounds = 2;
   generator::KnownTokens known;
   known.tokens = torch::randint(16, {6, 3}, torch::kLong);
@@ -125,7 +125,7 @@ TEST(Sampling, TemperatureSpreadsTheCodes) {
 
 TEST(Sampling, GuidanceOneIsTheConditionalModel) {
   SamplerModels models = sampler_models();
-  generator::SamplingOptions options;
+  SamplingOptions options;
   options.steps = 1;
   options.temperature = 0;
   options.guidance = 1;

@@ -144,7 +144,7 @@ TEST(Variants, TrainStoreAndGenerate) {
     EXPECT_EQ(retriever.at("recipe").at("training").at("queues"),
               name == "no-queues" ? "none" : "both");
     const pipeline::Generator generator(stages);
-    pipeline::GenerateOptions options;
+    GenerateOptions options;
     options.seconds = 2.0;
     options.sampling = recipe.sampling;
     const pipeline::Generated made = generator.generate("a person walks", {}, options);

@@ -9,7 +9,7 @@ namespace remomask {
 namespace {
 
 TEST(RankCandidates, BestFirstAndEqualOnesInTheirOrder) {
-  std::vector<pipeline::CandidateScore> scores(4);
+  std::vector<Candidate> scores(4);
   scores[0].score = 0.2;
   scores[1].score = 0.5;
   scores[2].score = -1000;

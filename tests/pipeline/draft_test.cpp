@@ -94,8 +94,8 @@ at::Tensor hit_codes(const pipeline::Generator& generator, const Motion& poses) 
       motion::extract_features_all_frames(poses, humanml_skeleton(), mode));
 }
 
-pipeline::GenerateOptions following(double share) {
-  pipeline::GenerateOptions options;
+GenerateOptions following(double share) {
+  GenerateOptions options;
   options.seconds = 2;
   options.seed = 3;
   options.follow = share;
@@ -124,7 +124,7 @@ TEST(Draft, AMotionKeepsTheCodesThatItFollows) {
 TEST(Draft, ADraftShorterThanTheMotionIsItsBeginning) {
   const pipeline::Generator generator(tiny_model().stages);
   const auto hits = posed_hit(generator);
-  pipeline::GenerateOptions options = following(1);
+  GenerateOptions options = following(1);
   options.seconds = 14;  // several windows, the draft in the first
   const pipeline::Generated made = generator.generate("a person walks", hits, options);
   ASSERT_EQ(made.tokens.size(0), 70);
@@ -172,12 +172,12 @@ TEST(Draft, HitsThatTheGateDoesNotTrustAreNotRead) {
   const pipeline::Generator generator(stages);
   auto hits = posed_hit(generator);
   hits.push_back(hits[0]);
-  const auto tokens = [&](double first, double second, pipeline::GenerateOptions options) {
+  const auto tokens = [&](double first, double second, GenerateOptions options) {
     hits[0].similarity = first;
     hits[1].similarity = second;
     return generator.generate("a person walks", hits, options);
   };
-  pipeline::GenerateOptions options = following(0), alone = options, all = options;
+  GenerateOptions options = following(0), alone = options, all = options;
   alone.use_retrieval = false;
   all.read_untrusted = true;
   EXPECT_EQ(tokens(0.9, 0.7, options).hits_used, 2);

@@ -57,7 +57,7 @@ double worst_bone_error(const Motion& motion, const Motion& before) {
 TEST(EditMotion, OnlyTheNamedCellsChange) {
   const pipeline::Generator generator(tiny_model().stages);
   const Motion& before = foreign_walk();
-  const std::vector<std::vector<pipeline::EditSpan>> edits = {
+  const std::vector<std::vector<pipeline::CellSpan>> edits = {
       {{20, 45, {}}},      // in between
       {{0, 17, {}}},       // the beginning
       {{50, 70, {}}},      // the end
@@ -67,9 +67,9 @@ TEST(EditMotion, OnlyTheNamedCellsChange) {
       {{5, 20, {5}}, {15, 30, {}}, {40, 61, {3, 4}}},
       {{0, 70, {}}},  // all of it
   };
-  for (const std::vector<pipeline::EditSpan>& spans : edits) {
-    pipeline::EditOptions options;
-    options.generate.seed = 3;
+  for (const std::vector<pipeline::CellSpan>& spans : edits) {
+    EditOptions options;
+    options.seed = 3;
     const pipeline::Edited edited =
         pipeline::edit_motion(generator, before, spans, "a man waves", {}, options);
     ASSERT_EQ(edited.motion.frames, before.frames);
@@ -80,7 +80,7 @@ TEST(EditMotion, OnlyTheNamedCellsChange) {
     const pipeline::Edited again =
         pipeline::edit_motion(generator, before, spans, "a man waves", {}, options);
     EXPECT_EQ(again.motion.positions, edited.motion.positions);
-    options.generate.seed = 4;
+    options.seed = 4;
     const pipeline::Edited other =
         pipeline::edit_motion(generator, before, spans, "a man waves", {}, options);
     EXPECT_NE(other.motion.positions, edited.motion.positions);
@@ -98,7 +98,7 @@ TEST(EditMotion, SamplesOnlyCellsWithFramesThatChange) {
 TEST(EditMotion, ContinuesFromTheLastPose) {
   const pipeline::Generator generator(tiny_model().stages);
   const Motion& before = foreign_walk();
-  pipeline::EditOptions options;
+  EditOptions options;
   options.extend_frames = 33;
   const pipeline::Edited edited =
       pipeline::edit_motion(generator, before, {}, "a person walks", {}, options);
@@ -111,7 +111,7 @@ TEST(EditMotion, ContinuesFromTheLastPose) {
 TEST(EditMotion, WhatCannotBeEditedIsAnError) {
   const pipeline::Generator generator(tiny_model().stages);
   const Motion& before = foreign_walk();
-  const auto edit = [&](const std::vector<pipeline::EditSpan>& spans) {
+  const auto edit = [&](const std::vector<pipeline::CellSpan>& spans) {
     return pipeline::edit_motion(generator, before, spans, "a man waves", {});
   };
   EXPECT_THROW(edit({}), Error);

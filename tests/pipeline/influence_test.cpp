@@ -14,7 +14,7 @@ TEST(HitInfluence, TheHitThatIsFollowedDecides) {
   const pipeline::Generator generator(tiny_model().stages);
   auto hits = two_hits(generator);
   hits[0].poses = motion::recover_motion(swinging_clips({40})[0].features, humanml_skeleton());
-  pipeline::GenerateOptions options;
+  GenerateOptions options;
   options.seconds = 2;
   options.follow = 1;
   const pipeline::Generated made = generator.generate("a person walks", hits, options);

@@ -48,7 +48,7 @@ TEST(GeneratorData, ClipsBecomeTokensFeaturesAndNeighbours) {
 
 TEST(Pipeline, MakesAMotionOfTheWantedLength) {
   const pipeline::Generator generator(tiny_model().stages);
-  pipeline::GenerateOptions options;
+  GenerateOptions options;
   options.seconds = 3;
   options.seed = 4;
   const pipeline::Generated made =
@@ -71,7 +71,7 @@ TEST(Pipeline, MakesAMotionOfTheWantedLength) {
 TEST(Pipeline, SameInputsSameMotionForAnyThreads) {
   const pipeline::Generator generator(tiny_model().stages);
   const auto hits = two_hits(generator);
-  pipeline::GenerateOptions options;
+  GenerateOptions options;
   options.seed = 9;
   nn::set_compute_threads(1);
   const pipeline::Generated one = generator.generate("a man waves", hits, options);
@@ -85,7 +85,7 @@ TEST(Pipeline, SameInputsSameMotionForAnyThreads) {
 
 TEST(Pipeline, WithoutRetrievalHitsAreNotRead) {
   const pipeline::Generator generator(tiny_model().stages);
-  pipeline::GenerateOptions options;
+  GenerateOptions options;
   options.use_retrieval = false;
   const pipeline::Generated with = generator.generate("a man waves", two_hits(generator), options);
   const pipeline::Generated without = generator.generate("a man waves", {}, options);
@@ -115,7 +115,7 @@ TEST(Pipeline, LengthsAreExactOrEstimated) {
 
 TEST(Pipeline, MakesEveryLengthExactly) {
   const pipeline::Generator generator(tiny_model().stages);
-  pipeline::GenerateOptions options;
+  GenerateOptions options;
   for (const double seconds : {1.0, 1.05, 2.1, 3.15, 9.8, 9.85, 25.3}) {
     options.seconds = seconds;
     const pipeline::Generated made = generator.generate("a person walks", {}, options);

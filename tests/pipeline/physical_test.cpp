@@ -18,12 +18,12 @@ void move_frame(Motion& motion, int frame, const Vec3& way) {
   }
 }
 
-pipeline::PhysicalMetrics measure(const Motion& motion) {
+PhysicalMetrics measure(const Motion& motion) {
   return pipeline::measure_physical(motion, humanml_skeleton());
 }
 
 TEST(Physical, StandingBodyIsPerfect) {
-  const pipeline::PhysicalMetrics metrics = measure(standing_body(5));
+  const PhysicalMetrics metrics = measure(standing_body(5));
   EXPECT_TRUE(metrics.finite);
   EXPECT_NEAR(metrics.bone_length_max, 0, 1e-5);
   EXPECT_NEAR(metrics.penetration_max, 0, 1e-6);
@@ -45,7 +45,7 @@ TEST(Physical, OneBoneTenPercentTooLong) {
   set_joint_position(motion, 2, 21,
                      joint_position(motion, 2, 19) +
                          1.1 * (joint_position(motion, 2, 21) - joint_position(motion, 2, 19)));
-  const pipeline::PhysicalMetrics metrics = measure(motion);
+  const PhysicalMetrics metrics = measure(motion);
   EXPECT_NEAR(metrics.bone_length_max, 0.1, 1e-5);
   EXPECT_NEAR(metrics.bone_length_mean, 0.1 / (21 * 4), 1e-6);
 }
@@ -57,7 +57,7 @@ TEST(Physical, BonesWithoutAUniformLengthCompareWithFrameZero) {
   set_joint_position(motion, 1, 21,
                      joint_position(motion, 1, 19) +
                          0.8 * (joint_position(motion, 1, 21) - joint_position(motion, 1, 19)));
-  const pipeline::PhysicalMetrics metrics = pipeline::measure_physical(motion, skeleton);
+  const PhysicalMetrics metrics = pipeline::measure_physical(motion, skeleton);
   EXPECT_NEAR(metrics.bone_length_max, 0.2, 1e-5);
   EXPECT_NEAR(metrics.bone_length_mean, 0.2 / (21 * 2), 1e-6);
 }
@@ -65,7 +65,7 @@ TEST(Physical, BonesWithoutAUniformLengthCompareWithFrameZero) {
 TEST(Physical, OneFrameTwoCentimetresBelowTheFloor) {
   Motion motion = standing_body(4);
   move_frame(motion, 1, {0, -0.02, 0});
-  const pipeline::PhysicalMetrics metrics = measure(motion);
+  const PhysicalMetrics metrics = measure(motion);
   EXPECT_NEAR(metrics.penetration_max, 0.02, 1e-6);
   EXPECT_NEAR(metrics.penetration_mean, 0.02 / 4, 1e-6);
 }
@@ -77,7 +77,7 @@ TEST(Physical, SlidingFeet) {
   move_frame(motion, 1, {0, 0, 0.02});
   move_frame(motion, 2, {0.03, 0, 0.02});
   move_frame(motion, 3, {0.06, 0.1, 0.02});
-  const pipeline::PhysicalMetrics metrics = measure(motion);
+  const PhysicalMetrics metrics = measure(motion);
   EXPECT_NEAR(metrics.contact_share, 4. / 6, 1e-9);
   EXPECT_NEAR(metrics.foot_skate, 0.5, 1e-5);
   EXPECT_NEAR(metrics.foot_skate_ratio, 0.5, 1e-9);
@@ -107,7 +107,7 @@ TEST(Physical, ShortMotionsAndWrongSkeletons) {
 }
 
 TEST(Physical, SummaryLeavesBrokenMotionsOut) {
-  pipeline::PhysicalMetrics one, two, broken;
+  PhysicalMetrics one, two, broken;
   one.jerk = 10;
   one.penetration_max = 0.01;
   two.jerk = 20;

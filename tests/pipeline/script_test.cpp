@@ -13,7 +13,7 @@ namespace remomask {
 namespace {
 
 TEST(ParseScript, LinesWithAndWithoutSeconds) {
-  const auto lines = pipeline::parse_script(
+  const auto lines = parse_script(
       "# a comment\n"
       "3  a person walks   # to the door\r\n"
       "\n"
@@ -34,7 +34,7 @@ TEST(ParseScript, LinesWithAndWithoutSeconds) {
 TEST(ParseScript, ErrorsSayFileAndLine) {
   const auto message = [](const std::string& text) -> std::string {
     try {
-      pipeline::parse_script(text, "s.txt");
+      parse_script(text, "s.txt");
     } catch (const FileError& error) {
       return error.what();
     }
@@ -97,7 +97,7 @@ TEST(GenerateScript, OnlyTheSeamOfTheSegmentBeforeChanges) {
 
 TEST(GenerateScript, OneShortSentenceIsAPlainGeneration) {
   const pipeline::Generator generator(tiny_model().stages);
-  pipeline::GenerateOptions plain;
+  GenerateOptions plain;
   plain.seconds = 2.0;
   plain.seed = 8;
   pipeline::ScriptOptions options;
@@ -166,11 +166,10 @@ TEST(LengthDistribution, FollowsTheNearest) {
   EXPECT_NEAR(distribution[22], 1. / 9 / whole, 1e-9);
   EXPECT_NEAR(distribution[30], 3. / 9 * std::exp(-2.0) / whole, 1e-9);
   EXPECT_EQ(distribution[0], 0);
-  EXPECT_NEAR(pipeline::estimate_seconds(distribution, pipeline::LengthRule::likely, 0), 4.0, 1e-9);
+  EXPECT_NEAR(pipeline::estimate_seconds(distribution, LengthRule::likely, 0), 4.0, 1e-9);
   int drawn_long = 0;
   for (uint64_t seed = 0; seed < 2000; ++seed) {
-    const double seconds =
-        pipeline::estimate_seconds(distribution, pipeline::LengthRule::sample, seed);
+    const double seconds = pipeline::estimate_seconds(distribution, LengthRule::sample, seed);
     EXPECT_TRUE((seconds > 3.5 && seconds < 4.5) || (seconds > 5.5 && seconds < 6.5)) << seconds;
     drawn_long += seconds > 5;
   }

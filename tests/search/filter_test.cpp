@@ -24,7 +24,7 @@ std::vector<db::Clip> example_clips() {
 }
 
 std::vector<int64_t> ids_with(const std::string& condition) {
-  search::ClipFilter filter;
+  ClipFilter filter;
   filter.labels = {search::parse_label_condition(condition)};
   return search::matching_clips(example_clips(), filter);
 }
@@ -32,7 +32,7 @@ std::vector<int64_t> ids_with(const std::string& condition) {
 using Ids = std::vector<int64_t>;
 
 TEST(ClipFilter, EmptyFilterTakesAll) {
-  EXPECT_TRUE(search::ClipFilter().empty());
+  EXPECT_TRUE(ClipFilter().empty());
   EXPECT_EQ(search::matching_clips(example_clips(), {}), (Ids{1, 2, 3, 4, 5}));
 }
 
@@ -49,13 +49,13 @@ TEST(ClipFilter, LabelsTextListAndNested) {
 }
 
 TEST(ClipFilter, AllLabelConditionsMustHold) {
-  search::ClipFilter filter;
+  ClipFilter filter;
   filter.labels = {{"content", "walk"}, {"actions", "walk"}};
   EXPECT_EQ(search::matching_clips(example_clips(), filter), (Ids{1}));
 }
 
 TEST(ClipFilter, SplitsAndLengths) {
-  search::ClipFilter filter;
+  ClipFilter filter;
   filter.splits = {"test", "val"};
   EXPECT_EQ(search::matching_clips(example_clips(), filter), (Ids{4, 5}));
   filter = {};
@@ -73,7 +73,7 @@ TEST(ClipFilter, TagsLicencesAndSpeed) {
   clips[2].licence = "MIT";
   clips[3].licence = "CC0";
   for (size_t i = 0; i < clips.size(); ++i) clips[i].speed = 0.5 * static_cast<double>(i);
-  search::ClipFilter filter;
+  ClipFilter filter;
   filter.tags = {"good"};
   EXPECT_FALSE(filter.empty());
   EXPECT_EQ(search::matching_clips(clips, filter), (Ids{1, 2}));
@@ -112,7 +112,7 @@ TEST(ClipFilter, CaptionsOfADatabase) {
     clip.split = ids.empty() ? "test" : "train";
     ids.push_back(database.add_clip(clip, walking_motion(20, static_cast<int>(ids.size()))));
   }
-  search::ClipFilter filter;
+  ClipFilter filter;
   EXPECT_EQ(search::matching_clips(database, filter), ids);
   filter.caption_query = "running";
   EXPECT_FALSE(filter.empty());
@@ -126,7 +126,7 @@ TEST(ClipFilter, CaptionsOfADatabase) {
 }
 
 TEST(ClipFilter, Exclusions) {
-  search::ClipFilter filter;
+  ClipFilter filter;
   filter.excluded_groups = {"one"};
   filter.excluded_clips = {5};
   EXPECT_FALSE(filter.empty());
@@ -137,7 +137,7 @@ TEST(ClipFilter, Exclusions) {
 }
 
 TEST(ClipFilter, RefusesMistakes) {
-  search::ClipFilter filter;
+  ClipFilter filter;
   filter.splits = {"tests"};
   EXPECT_NE(error_of([&] { search::matching_clips(example_clips(), filter); }).find("'tests'"),
             std::string::npos);

@@ -38,15 +38,15 @@ class HitListTest : public ::testing::Test {
         index::VectorIndex::build(*database_, "retriever"), database_->clips());
   }
 
-  std::vector<search::MotionHit> hits(int k, bool grouped) const {
-    search::SearchQuery query;
+  std::vector<MotionHit> hits(int k, bool grouped) const {
+    SearchQuery query;
     query.k = k;
     query.grouped = grouped;
     return search::collect_hits(scene_, query, {{1.f, 0.f}, {}}).hits;
   }
   Names names(int k, bool grouped) const {
     Names found;
-    for (const search::MotionHit& hit : hits(k, grouped)) {
+    for (const MotionHit& hit : hits(k, grouped)) {
       found.push_back(hit.clip.name);
       EXPECT_EQ(hit.rank, static_cast<int>(found.size()));
     }
@@ -76,7 +76,7 @@ TEST_F(HitListTest, GroupsAndLooksFurther) {
 }
 
 TEST_F(HitListTest, FiltersBeforeItGroups) {
-  search::ClipFilter filter;
+  ClipFilter filter;
   filter.splits = {"val"};
   scene_.allowed = search::matching_clips(*database_, filter);
   EXPECT_EQ(names(3, true), (Names{"clip1", "clip21", "clip23"}));

@@ -97,7 +97,7 @@ class MotionSearchTest : public ::testing::Test {
 
   /// The answer by definition: every clip scored, sorted, filtered, grouped.
   static std::vector<std::pair<std::string, double>> by_definition(const Similarity& similarity,
-                                                                   const search::SearchQuery& query,
+                                                                   const SearchQuery& query,
                                                                    const Passes& passes) {
     std::vector<std::pair<double, int64_t>> scored;
     for (const db::ClipEmbedding& clip : database_->embeddings(retriever_->hash())) {
@@ -115,10 +115,10 @@ class MotionSearchTest : public ::testing::Test {
     return result;
   }
 
-  static void expect_exact(const search::SearchQuery& query, const Similarity& similarity,
+  static void expect_exact(const SearchQuery& query, const Similarity& similarity,
                            const Passes& passes) {
     const auto expected = by_definition(similarity, query, passes);
-    const search::SearchAnswer answer = search_->search(query);
+    const SearchAnswer answer = search_->search(query);
     ASSERT_EQ(answer.hits.size(), expected.size());
     for (size_t i = 0; i < expected.size(); ++i) {
       EXPECT_EQ(answer.hits[i].clip.name, expected[i].first) << i;
@@ -128,8 +128,7 @@ class MotionSearchTest : public ::testing::Test {
   }
 
   /// Without and with filter, grouped and not, few and many.
-  static void expect_exact_however_filtered(search::SearchQuery query,
-                                            const Similarity& similarity) {
+  static void expect_exact_however_filtered(SearchQuery query, const Similarity& similarity) {
     std::string like_group = "none";
     if (!query.like_clip.empty()) {
       like_group = database_->clip(*database_->find_name(query.like_clip)).group;
@@ -166,7 +165,7 @@ db::Database* MotionSearchTest::database_ = nullptr;
 search::MotionSearch* MotionSearchTest::search_ = nullptr;
 
 TEST_F(MotionSearchTest, FindsBySentence) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.text = "a person walks";
   const auto text = encode(query.text);
   expect_exact_however_filtered(
@@ -174,7 +173,7 @@ TEST_F(MotionSearchTest, FindsBySentence) {
 }
 
 TEST_F(MotionSearchTest, FindsByMotion) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.like_clip = "clip7";
   const auto like = vectors_of("clip7");
   expect_exact_however_filtered(
@@ -182,7 +181,7 @@ TEST_F(MotionSearchTest, FindsByMotion) {
 }
 
 TEST_F(MotionSearchTest, FindsByBodyParts) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.like_clip = "clip7";
   query.parts = {"arms", "left_leg"};
   const auto like = vectors_of("clip7");
@@ -205,7 +204,7 @@ TEST_F(MotionSearchTest, FindsByBodyParts) {
 }
 
 TEST_F(MotionSearchTest, FindsBySentenceAndMotion) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.text = "a person waves";
   query.like_clip = "clip20";
   query.text_weight = 0.5;
@@ -218,16 +217,16 @@ TEST_F(MotionSearchTest, FindsBySentenceAndMotion) {
 }
 
 TEST_F(MotionSearchTest, CountsWhatItFolded) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.text = "a person walks";
-  search::SearchAnswer answer = search_->search(query);
+  SearchAnswer answer = search_->search(query);
   EXPECT_EQ(answer.candidates, kClips);
-  for (const search::MotionHit& hit : answer.hits) EXPECT_EQ(hit.folded, 2);
+  for (const MotionHit& hit : answer.hits) EXPECT_EQ(hit.folded, 2);
   query.filter.splits = {"val"};  // i, i + 30, i + 60 are in one split
   query.filter.min_seconds = 4;   // 60 of them at least 80 frames long
   answer = search_->search(query);
   ASSERT_FALSE(answer.hits.empty());
-  for (const search::MotionHit& hit : answer.hits) {
+  for (const MotionHit& hit : answer.hits) {
     int expected = -1;
     for (const db::Clip& clip : database_->clips()) {
       expected += clip.group == hit.clip.group && clip.frames >= 80;
@@ -235,21 +234,21 @@ TEST_F(MotionSearchTest, CountsWhatItFolded) {
     EXPECT_EQ(hit.folded, expected) << hit.clip.name;
   }
   query.grouped = false;
-  for (const search::MotionHit& hit : search_->search(query).hits) EXPECT_EQ(hit.folded, 0);
+  for (const MotionHit& hit : search_->search(query).hits) EXPECT_EQ(hit.folded, 0);
 }
 
 TEST_F(MotionSearchTest, LimitsRefuseAndSayWhat) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.text = "a person walks";
   query.k = 30;
-  const search::SearchAnswer all = search_->search(query);
+  const SearchAnswer all = search_->search(query);
   ASSERT_EQ(all.hits.size(), 30u);
-  query.least_similarity = all.hits[4].similarity;  // the limit itself passes
-  search::SearchAnswer some = search_->search(query);
+  query.min_similarity = all.hits[4].similarity;  // the limit itself passes
+  SearchAnswer some = search_->search(query);
   ASSERT_EQ(some.hits.size(), 5u);
   ASSERT_TRUE(some.refused);
   EXPECT_EQ(some.refused->clip.name, all.hits[5].clip.name);
-  query.least_similarity = 0.99;
+  query.min_similarity = 0.99;
   some = search_->search(query);
   EXPECT_TRUE(some.hits.empty());
   ASSERT_TRUE(some.refused);
@@ -262,7 +261,7 @@ TEST_F(MotionSearchTest, LimitsRefuseAndSayWhat) {
 }
 
 TEST_F(MotionSearchTest, CaptionsAreThoseOfNearClipsByTheirOwnCosine) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.like_clip = "clip3";
   query.filter.splits = {"train"};  // 45 clips, all are near enough
   query.k = 100;
@@ -291,7 +290,7 @@ TEST_F(MotionSearchTest, CaptionsAreThoseOfNearClipsByTheirOwnCosine) {
 }
 
 TEST_F(MotionSearchTest, LeavesUnwantedWordsOutByTheirStem) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.text = "a person -waving walks -nonsense";
   query.k = 200;
   const auto text = encode("a person walks");
@@ -315,7 +314,7 @@ TEST_F(MotionSearchTest, LeavesUnwantedWordsOutByTheirStem) {
 }
 
 TEST_F(MotionSearchTest, BoostsWordsByReciprocalRanks) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.text = "a person walks";
   query.boost_words = "hands, & number 7";
   query.k = 20;
@@ -326,7 +325,7 @@ TEST_F(MotionSearchTest, BoostsWordsByReciprocalRanks) {
       query.boost_weight = weight;
       query.filter = {};
       if (filtered) query.filter.splits = {"train"};
-      search::SearchQuery plain = query;
+      SearchQuery plain = query;
       plain.k = kClips;
       const auto by_vector = by_definition(
           [&](const db::ClipEmbedding& clip) { return dot(text, clip.motion); }, plain,
@@ -344,7 +343,7 @@ TEST_F(MotionSearchTest, BoostsWordsByReciprocalRanks) {
       std::stable_sort(expected.begin(), expected.end(), [&](const auto& a, const auto& b) {
         return scores.at(a.first) > scores.at(b.first);
       });
-      const search::SearchAnswer answer = search_->search(query);
+      const SearchAnswer answer = search_->search(query);
       ASSERT_EQ(answer.hits.size(), 20u);
       EXPECT_EQ(answer.boosted, filtered ? 45 : 90);
       for (size_t i = 0; i < 20; ++i) {
@@ -369,7 +368,7 @@ TEST_F(MotionSearchTest, SeesWhatOthersHaveChanged) {
   store_random_vectors(database, 1);
   index::VectorIndex::build(database, retriever_->hash()).save(path + ".index");
   const search::MotionSearch search(kModel, path);
-  search::SearchQuery query;
+  SearchQuery query;
   query.like_clip = "old";
   query.parts = {"arms"};
   EXPECT_EQ(search.search(query).hits.size(), 1u);
@@ -392,12 +391,12 @@ TEST_F(MotionSearchTest, ProbabilitiesAreThoseOfTheStoredCalibration) {
   store_random_vectors(database, 3);
   index::VectorIndex::build(database, retriever_->hash()).save(path + ".index");
   const search::MotionSearch search(kModel, path);
-  search::SearchQuery query;
+  SearchQuery query;
   query.text = "a person walks";
-  const search::SearchAnswer plain = search.search(query);
+  const SearchAnswer plain = search.search(query);
   ASSERT_EQ(plain.hits.size(), 5u);
   EXPECT_FALSE(plain.hits[0].probability);
-  query.least_probability = 0.5;
+  query.min_probability = 0.5;
   EXPECT_NE(error_of([&] { search.search(query); }).find("remomask evaluate calibration"),
             std::string::npos);
 
@@ -407,43 +406,43 @@ TEST_F(MotionSearchTest, ProbabilitiesAreThoseOfTheStoredCalibration) {
       search::fit_calibration({low - 1, low, low, high}, {false, false, true, true});
   database.set_fact(search::calibration_fact(retriever_->hash()),
                     nlohmann::json(calibration).dump());
-  query.least_probability.reset();
-  const search::SearchAnswer answer = search.search(query);
-  for (const search::MotionHit& hit : answer.hits) {
+  query.min_probability.reset();
+  const SearchAnswer answer = search.search(query);
+  for (const MotionHit& hit : answer.hits) {
     EXPECT_DOUBLE_EQ(hit.probability.value(), calibration.probability(hit.similarity));
   }
   EXPECT_DOUBLE_EQ(*answer.hits[0].probability, 1);
   EXPECT_DOUBLE_EQ(*answer.hits[2].probability, 0.5);
-  query.least_probability = 0.75;
-  const search::SearchAnswer limited = search.search(query);
+  query.min_probability = 0.75;
+  const SearchAnswer limited = search.search(query);
   ASSERT_EQ(limited.hits.size(), 2u);
   EXPECT_EQ(limited.refused->clip.name, answer.hits[2].clip.name);
-  query.least_probability = 1.5;
+  query.min_probability = 1.5;
   EXPECT_NE(error_of([&] { search.search(query); }).find("no probability"), std::string::npos);
 
-  search::SearchQuery like;
+  SearchQuery like;
   like.like_clip = "a";
   EXPECT_FALSE(search.search(like).hits.at(0).probability);
-  like.least_probability = 0.5;
+  like.min_probability = 0.5;
   EXPECT_NE(error_of([&] { search.search(like); }).find("sentences alone"), std::string::npos);
   database.set_fact(search::calibration_fact(retriever_->hash()), "{]");
-  query.least_probability.reset();
+  query.min_probability.reset();
   EXPECT_NE(error_of([&] { search.search(query); }), "");
 }
 
 TEST_F(MotionSearchTest, AnswersSeveralThreadsAlike) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.text = "a person kicks";
   query.like_clip = "clip11";
   query.parts = {"legs"};
-  const search::SearchAnswer expected = search_->search(query);
+  const SearchAnswer expected = search_->search(query);
   std::vector<int> failures(4, 0);
   {
     std::vector<std::jthread> threads;
     for (size_t t = 0; t < failures.size(); ++t) {
       threads.emplace_back([&, t] {
         for (int round = 0; round < 5; ++round) {
-          const search::SearchAnswer answer = search_->search(query);
+          const SearchAnswer answer = search_->search(query);
           for (size_t i = 0; i < expected.hits.size(); ++i) {
             failures[t] += answer.hits.at(i).clip.id != expected.hits[i].clip.id;
           }
@@ -457,14 +456,14 @@ TEST_F(MotionSearchTest, AnswersSeveralThreadsAlike) {
 TEST_F(MotionSearchTest, StoredMotionsAndMomentsOfTheShippedDatabase) {
   const search::MotionSearch shipped(kModel, kModels + "procedural.sqlite");
   const db::Database database(kModels + "procedural.sqlite", db::OpenMode::read_only);
-  search::SearchQuery query;
+  SearchQuery query;
   query.k = 1;
   for (const char* name : {"procedural-walk-circle-left-000", "procedural-walk-slow-000"}) {
     query.motion = database.motion(*database.find_name(name));
     for (const std::vector<std::string>& parts :
          {std::vector<std::string>{}, std::vector<std::string>{"arms"}}) {
       query.parts = parts;
-      const search::SearchAnswer answer = shipped.search(query);
+      const SearchAnswer answer = shipped.search(query);
       EXPECT_EQ(answer.hits.at(0).clip.name, name);
       EXPECT_NEAR(answer.hits[0].similarity, 1, 1e-3);
     }
@@ -472,12 +471,12 @@ TEST_F(MotionSearchTest, StoredMotionsAndMomentsOfTheShippedDatabase) {
   query.moments = true;
   EXPECT_NE(error_of([&] { shipped.search(query); }).find("whole body"), std::string::npos);
   query.parts.clear();
-  search::SearchQuery jump;
+  SearchQuery jump;
   jump.text = "a person jumps";
   jump.moments = true;
   jump.k = 3;
   const at::Tensor text = retriever_->encode_text({jump.text}).query[0];
-  for (const search::MotionHit& hit : shipped.search(jump).hits) {
+  for (const MotionHit& hit : shipped.search(jump).hits) {
     const motion::Features features = motion::extract_features_all_frames(
         database.motion(hit.clip.id), humanml_skeleton(), retriever_->feature_mode());
     const auto windows = search::moment_windows(features.frames);

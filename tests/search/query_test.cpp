@@ -12,7 +12,7 @@
 namespace remomask {
 namespace {
 
-std::string refusal(const search::SearchQuery& query) {
+std::string refusal(const SearchQuery& query) {
   return error_of([&] { search::check_query(query); });
 }
 
@@ -28,7 +28,7 @@ TEST(BodyPartNames, AreThoseOfTheMapAndPairsOfThem) {
 }
 
 TEST(Query, RefusesWhatMakesNoSense) {
-  search::SearchQuery query;
+  SearchQuery query;
   EXPECT_NE(refusal(query).find("nothing to look for"), std::string::npos);
   query.parts = {"arms"};
   query.text = "walk";
@@ -57,7 +57,7 @@ TEST(LinearQuery, WeighsSentenceAndMotion) {
   vectors.text = {1, 0};
   vectors.motion = {0, 1};
   vectors.motion_parts.assign(motion::kBodyParts * 1, 0.5f);
-  search::SearchQuery query;
+  SearchQuery query;
   query.text_weight = 3;
   const index::LinearQuery both = search::linear_query(vectors, query);
   EXPECT_EQ(both.global, (std::vector<float>{0.75f, 0.25f}));
@@ -72,7 +72,7 @@ TEST(LinearQuery, WeighsSentenceAndMotion) {
 }
 
 TEST(LinearQuery, WeightsMeanNothingToASingleSource) {
-  search::SearchQuery query;
+  SearchQuery query;
   query.text_weight = 0.2;
   query.motion_weight = 0;
   EXPECT_EQ(search::linear_query({{1, 0}, {}, {}}, query).global, (std::vector<float>{1, 0}));
@@ -98,7 +98,7 @@ TEST(VectorTable, SumsGlobalAndPartsAsTheDefinitionSays) {
   const index::VectorTable table = index::VectorTable::of_bodies(embeddings);
   search::QueryVectors vectors{random_directions(1, kWidth, 3), embeddings[40].motion,
                                embeddings[40].parts};
-  search::SearchQuery query;
+  SearchQuery query;
   query.parts = {"arms", "root_lower_spine"};
   query.text_weight = 0.4;
   std::vector<int64_t> even;

@@ -114,7 +114,7 @@ TEST(PresetsTest, OneRowWithoutRetrievalWorksFromEndToEnd) {
   options.trainer = trainer("residual");
   stages["residual"] = training::train_residual(model.residual, data, options, {});
   const pipeline::Generator generator(stages);
-  pipeline::GenerateOptions generate;
+  GenerateOptions generate;
   generate.seconds = 2.0;
   const pipeline::Generated made = generator.generate("a person walks", {}, generate);
   EXPECT_EQ(made.tokens.sizes(), (std::vector<int64_t>{10, 1, 6}));

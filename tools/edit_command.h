@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/generation_options.h"
+#include "tools/program.h"
+#include "tools/workspace.h"
+
+namespace remomask::tools {
+
+/// What `remomask edit` is asked for.
+struct EditCommand {
+  EditCommand() { generation.generate.follow = EditOptions().follow; }
+
+  std::string input, output, prompt, spans, sheet;
+  std::vector<std::string> parts, cells;
+  double extend = 0;  ///< seconds
+  int fade = EditOptions().fade;
+  FileOptions files;
+  FilterOptions filter;
+  GenerationOptions generation;
+  int count = 1;
+};
+
+void run_edit(const EditCommand& command, Program& program);
+
+}  // namespace remomask::tools

@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "base/counted.h"
+#include "drawing/contact_sheet.h"
+#include "pipeline/motion_document.h"
+#include "remomask/error.h"
+#include "remomask/motion_file.h"
+#include "remomask/text_to_motion.h"
+#include "tools/edit_command.h"
+#include "tools/edit_spans.h"
+#include "tools/evidence_text.h"
+#include "tools/output_path.h"
+
+namespace remomask::tools {
+
+void run_edit(const EditCommand& command, Program& program) {
+  using Clock = std::chrono::steady_clock;
+  MotionFileOptions reading;
+  reading.canonical = false;
+  const Motion original = load_motion(command.input, reading).motion;
+  const std::vector<EditSpan> spans =
+      parse_edit_spans(command.spans, command.parts, command.cells, original.frames);
+  EditOptions options;
+  static_cast<GenerateOptions&>(options) = command.generation.chosen();
+  options.fade = command.fade;
+  options.extend_frames = static_cast<int>(std::lround(command.extend * original.fps));
+  options.evidence = command.filter.filter();
+  if (spans.empty() && options.extend_frames == 0) {
+    throw Error("there is nothing to edit; name a --span, --parts, --cells or --extend");
+  }
+  const Monitor monitor = program.monitor();
+  OpenOptions open;
+  open.index = command.files.index;
+  open.threads = program.threads;
+  const TextToMotion remomask(command.files.model_path(), command.files.database_path(), open);
+  nlohmann::json motions = nlohmann::json::array();
+  std::vector<drawing::SheetRow> rows = {{"before", command.input, original}};
+  for (int i = 0; i < command.count; ++i) {
+    const auto start = Clock::now();
+    EditedMotion made;
+    try {
+      made = remomask.edit(original, spans, command.prompt, options, monitor);
+    } catch (const Interrupted&) {
+      throw Interrupted(
+          fmt::format("stopped; {} of {} are stored; --seed {} --count {} makes the "
+                      "others",
+                      i, counted(command.count, "motion"), options.seed, command.count - i));
+    }
+    program.finish_progress();
+    made.original = command.input;
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const std::string path = sample_path(command.output, i, command.count);
+    save_motion(path, made);
+    nlohmann::json entry = pipeline::motion_document(made);
+    entry["file"] = path;
+    entry["seconds_of_work"] = seconds;
+    motions.push_back(std::move(entry));
+    rows.push_back({command.prompt, evidence_line(made.evidence), made.motion});
+    ++options.seed;
+    if (program.json) continue;
+    fmt::print("{}: {}, {} of {} tokens new, in {:.2f} s, seed {}\n", path,
+               counted(made.motion.frames, "frame"), made.tokens_sampled, made.tokens, seconds,
+               made.seed);
+    if (made.path_shift_metres > 0 || made.path_turn_degrees > 0) {
+      fmt::print("  path bent by {:.2f} m and {:.0f} degrees to meet both ends\n",
+                 made.path_shift_metres, made.path_turn_degrees);
+    }
+  }
+  if (!command.sheet.empty()) {
+    drawing::write_contact_sheet(command.sheet, rows);
+    if (!program.json) fmt::print("{}: contact sheet\n", command.sheet);
+  }
+  program.print_json({{"schema", "remomask.motions/1"}, {"motions", motions}});
+}
+
+}  // namespace remomask::tools

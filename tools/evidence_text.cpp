@@ -1,0 +1,77 @@
+#include "tools/evidence_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "remomask/error.h"
+
+namespace remomask::tools {
+
+namespace {
+
+void append_hit(std::string& line, const std::string& name, double similarity) {
+  line += line.empty() ? "retrieved: " : ", ";
+  line += fmt::format("{} ({:.2f})", name, similarity);
+}
+
+std::string stored_evidence_line(const nlohmann::json& evidence) {
+  std::string line;
+  for (const auto& hit : evidence) {
+    // Version 0.1 did not always say which hits were read: then all were.
+    if (!hit.value("read", true)) continue;
+    append_hit(line, hit.at("clip").get<std::string>(), hit.at("similarity").get<double>());
+  }
+  return line;
+}
+
+SidecarText text_of_sidecar(const nlohmann::json& sidecar) {
+  if (!sidecar.contains("segments") || !sidecar.at("segments").is_array()) {
+    return {sidecar.at("prompt").get<std::string>(),
+            stored_evidence_line(nlohmann::json::parse(sidecar.at("evidence").get<std::string>()))};
+  }
+  const nlohmann::json& segments = sidecar.at("segments");
+  SidecarText text;
+  for (const auto& segment : segments) {
+    text.title += (text.title.empty() ? "" : "; ") + segment.at("sentence").get<std::string>();
+  }
+  if (segments.size() == 1) {
+    text.subtitle = stored_evidence_line(segments.front().at("evidence"));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string evidence_line(const std::vector<Evidence>& evidence) {
+  std::string line;
+  for (const Evidence& entry : evidence) {
+    if (entry.use != EvidenceUse::read) continue;
+    append_hit(line, entry.hit.clip.name, entry.hit.similarity);
+  }
+  return line;
+}
+
+std::string evidence_refusal(const std::vector<Evidence>& evidence) {
+  const bool wordless = std::all_of(evidence.begin(), evidence.end(), [](const Evidence& entry) {
+    return entry.use == EvidenceUse::no_captions;
+  });
+  return wordless ? "made from the text alone; the retrieved clips have no captions, without which "
+                    "they cannot be read (remomask db tag --set-caption adds one)"
+                  : "made from the text alone; none of the retrieved motions fits";
+}
+
+SidecarText read_sidecar_text(const std::string& motion_path) {
+  const std::string path = motion_path + ".json";
+  if (!std::filesystem::exists(path)) return {};
+  try {
+    return text_of_sidecar(nlohmann::json::parse(read_file(path)));
+  } catch (const nlohmann::json::exception& error) {
+    throw FileError(path, 0, std::string("is not what generate writes: ") + error.what());
+  }
+}
+
+}  // namespace remomask::tools

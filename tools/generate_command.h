@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "tools/generation_options.h"
+#include "tools/program.h"
+#include "tools/workspace.h"
+
+namespace remomask::tools {
+
+/// What `remomask generate` is asked for.
+struct GenerateCommand {
+  std::string prompt, script, output, sheet;
+  FileOptions files;
+  FilterOptions filter;
+  GenerationOptions generation;
+  int count = 1;
+};
+
+void run_generate(const GenerateCommand& command, Program& program);
+
+}  // namespace remomask::tools

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/counted.h"
+#include "base/file.h"
+#include "drawing/contact_sheet.h"
+#include "pipeline/motion_document.h"
+#include "remomask/error.h"
+#include "remomask/motion_file.h"
+#include "remomask/text_to_motion.h"
+#include "tools/evidence_text.h"
+#include "tools/generate_command.h"
+#include "tools/output_path.h"
+
+namespace remomask::tools {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void print_evidence(const std::vector<Evidence>& evidence) {
+  const auto is_read = [](const Evidence& entry) { return entry.use == EvidenceUse::read; };
+  const bool any = std::any_of(evidence.begin(), evidence.end(), is_read);
+  if (evidence.empty()) return;
+  fmt::print("{}\n", any ? "made from the retrieved motions" : evidence_refusal(evidence));
+  for (const Evidence& entry : evidence) {
+    if (any && !is_read(entry)) continue;
+    const std::string influence =
+        entry.influence ? fmt::format("{:3.0f} %  ", 100 * *entry.influence) : "";
+    fmt::print("  {:.3f}  {}{:<28} {}\n", entry.hit.similarity, influence, entry.hit.clip.name,
+               entry.hit.clip.captions.empty() ? "" : entry.hit.clip.captions.front());
+  }
+}
+
+void print_followed(const std::vector<Evidence>& evidence) {
+  for (const Evidence& entry : evidence) {
+    if (entry.followed_share <= 0) continue;
+    fmt::print("  {:.0f} % of its frames began as {}\n", 100 * entry.followed_share,
+               entry.hit.clip.name);
+  }
+}
+
+void print_script(const std::string& path, const ScriptedMotion& made, double seconds) {
+  fmt::print("{}: {} ({:.1f} s of motion) of {} in {:.2f} s, seed {}\n", path,
+             counted(made.motion.frames, "frame"), made.motion.seconds(),
+             counted(static_cast<int64_t>(made.segments.size()), "sentence"), seconds, made.seed);
+  for (const ScriptedSegment& segment : made.segments) {
+    fmt::print("  {:6.2f} s  {}\n", segment.first / made.motion.fps, segment.sentence);
+  }
+  if (made.jerk_at_seams && made.jerk_of_real > 0) {
+    fmt::print("jerk at the seams: {:.2f} times that of the database's clips\n",
+               *made.jerk_at_seams / made.jerk_of_real);
+  }
+}
+
+nlohmann::json answer_entry(nlohmann::json document, const std::string& path, double seconds) {
+  document["file"] = path;
+  document["seconds_of_work"] = seconds;
+  return document;
+}
+
+void print_answer(Program& program, nlohmann::json motions) {
+  program.print_json({{"schema", "remomask.motions/1"}, {"motions", std::move(motions)}});
+}
+
+void finish_sheet(const std::string& path, const std::vector<drawing::SheetRow>& rows,
+                  const Program& program) {
+  if (path.empty()) return;
+  drawing::write_contact_sheet(path, rows);
+  if (!program.json) fmt::print("{}: contact sheet\n", path);
+}
+
+void run_script(const GenerateCommand& command, const TextToMotion& remomask,
+                const GenerateOptions& options, Program& program) {
+  const auto start = Clock::now();
+  const auto lines = parse_script(read_file(command.script), command.script);
+  const ScriptedMotion made = remomask.script(lines, options, program.monitor());
+  program.finish_progress();
+  const double seconds = seconds_since(start);
+  save_motion(command.output, made);
+  std::vector<drawing::SheetRow> rows;
+  for (const ScriptedSegment& segment : made.segments) {
+    rows.push_back({segment.sentence, evidence_line(segment.evidence),
+                    slice(made.motion, segment.first, segment.last)});
+  }
+  if (!program.json) print_script(command.output, made, seconds);
+  finish_sheet(command.sheet, rows, program);
+  nlohmann::json entry = answer_entry(pipeline::motion_document(made), command.output, seconds);
+  entry["script_file"] = command.script;
+  print_answer(program, nlohmann::json::array({entry}));
+}
+
+}  // namespace
+
+void run_generate(const GenerateCommand& command, Program& program) {
+  const Monitor monitor = program.monitor();
+  OpenOptions open;
+  open.index = command.files.index;
+  open.threads = program.threads;
+  const TextToMotion remomask(command.files.model_path(), command.files.database_path(), open);
+  GenerateOptions options = command.generation.chosen();
+  options.evidence = command.filter.filter();
+  if (!command.script.empty()) return run_script(command, remomask, options, program);
+  nlohmann::json motions = nlohmann::json::array();
+  std::vector<drawing::SheetRow> rows;
+  for (int i = 0; i < command.count; ++i) {
+    const auto start = Clock::now();
+    GeneratedMotion made;
+    try {
+      made = remomask.generate(command.prompt, options, monitor);
+    } catch (const Interrupted&) {
+      throw Interrupted(
+          fmt::format("stopped; {} of {} are stored; --seed {} --count {} makes the "
+                      "others",
+                      i, counted(command.count, "motion"), options.seed, command.count - i));
+    }
+    program.finish_progress();
+    const double seconds = seconds_since(start);
+    const std::string path = sample_path(command.output, i, command.count);
+    save_motion(path, made);
+    motions.push_back(answer_entry(pipeline::motion_document(made), path, seconds));
+    rows.push_back({command.prompt, evidence_line(made.evidence), made.motion});
+    if (!program.json) {
+      fmt::print("{}: {} ({:.1f} s of motion) in {:.2f} s, seed {}\n", path,
+                 counted(made.motion.frames, "frame"), made.motion.seconds(), seconds, made.seed);
+      print_followed(made.evidence);
+      if (i == 0 || options.influence) print_evidence(made.evidence);
+    }
+    ++options.seed;
+  }
+  finish_sheet(command.sheet, rows, program);
+  print_answer(program, std::move(motions));
+}
+
+}  // namespace remomask::tools

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "remomask/search.h"
+#include "tools/program.h"
+#include "tools/workspace.h"
+
+namespace remomask::tools {
+
+/// What `remomask search` is asked for.
+struct SearchCommand {
+  SearchQuery query;
+  FileOptions files;
+  FilterOptions filter;
+  std::string like_file;
+  std::optional<double> from, to;  ///< seconds of the file
+  bool ungrouped = false, captions = false;
+};
+
+void run_search(const SearchCommand& command, Program& program);
+
+}  // namespace remomask::tools
