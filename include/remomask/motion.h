@@ -10,7 +10,7 @@
 namespace remomask {
 
 /// Joint positions over time, with the skeleton and the frame rate that they belong to.
-struct Motion {
+struct REMOMASK_API Motion {
   int frames = 0;
   int joints = 22;
   std::vector<float> positions;        ///< [frames][joints][3], metres, Y up

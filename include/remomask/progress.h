@@ -4,11 +4,13 @@
 #include <stop_token>
 #include <string>
 
+#include "remomask/export.h"
+
 namespace remomask {
 
 /// What long work tells its caller. Libraries never print: the program turns
 /// this into a bar or plain lines.
-struct Progress {
+struct REMOMASK_API Progress {
   std::string stage;   ///< for example "import bandai2" or "train tokenizer"
   double done = 0;     ///< in units of `total`
   double total = 0;    ///< 0 when unknown
@@ -18,7 +20,7 @@ struct Progress {
 using ProgressFunction = std::function<void(const Progress&)>;
 
 /// How long work is observed and stopped.
-struct Monitor {
+struct REMOMASK_API Monitor {
   ProgressFunction progress;  ///< may be empty
   std::stop_token stop;       ///< checked often; work stops in a resumable state
 

@@ -10,7 +10,7 @@ namespace remomask {
 
 /// A joint hierarchy with everything that the 263-d (12 J - 1) features need.
 /// Y up, metres (KIT-ML: its own unit), character faces +Z, its left is +X.
-struct Skeleton {
+struct REMOMASK_API Skeleton {
   std::string name;                      ///< "humanml3d" (22 joints) or "kit" (21)
   std::vector<std::string> joint_names;  ///< SMPL names: "pelvis", "left_hip", ...
   std::vector<int> parents;              ///< -1 for the root; parents come first

@@ -1,0 +1,63 @@
+#!/bin/bash
+# Builds and tests the project in a clean Debian root of its own, so that both supported
+# releases can be checked on one machine. Needs root, debootstrap and 4 GB of disk. The
+# root is kept and reused: a second run compiles only what has changed.
+#   tools/build_in_root.sh bookworm|trixie FOLDER [COMMAND...]
+# COMMAND runs in the copy of the checkout instead of tools/test.sh. JOBS=1 limits the
+# compiler processes.
+set -euo pipefail
+release=${1:-}
+folder=${2:-}
+if [ $# -lt 2 ] || { [ "$release" != bookworm ] && [ "$release" != trixie ]; }; then
+  echo "usage: $0 bookworm|trixie FOLDER [COMMAND...]" >&2
+  exit 2
+fi
+shift 2
+[ "$(id -u)" = 0 ] || { echo "$0 needs root, for debootstrap and chroot: run it by sudo" >&2; exit 1; }
+command -v debootstrap >/dev/null ||
+  { echo "debootstrap is missing: apt-get install debootstrap" >&2; exit 1; }
+source=$(cd "$(dirname "$0")/.." && pwd)
+mirror=${MIRROR:-http://deb.debian.org/debian}
+
+if [ ! -f "$folder/etc/apt/remomask_ready" ]; then
+  debootstrap --variant=minbase "$release" "$folder" "$mirror"
+  # The way to the network that this machine uses: proxies, mirrors, checks of dates.
+  apt-config dump | grep -E '^Acquire::(Check-|https?::|Retries)' \
+    >"$folder/etc/apt/apt.conf.d/90host" || true
+  echo 'Binary::apt-get::APT::Keep-Downloaded-Packages "false";' \
+    >"$folder/etc/apt/apt.conf.d/91small"
+  touch "$folder/etc/apt/remomask_ready"
+fi
+folder=$(cd "$folder" && pwd)
+cp -L /etc/resolv.conf "$folder/etc/resolv.conf"
+
+# Whatever is mounted below is gone with this mount namespace, even after a kill.
+if [ -z "${REMOMASK_IN_NAMESPACE:-}" ]; then
+  REMOMASK_IN_NAMESPACE=1 exec unshare --mount --propagation private \
+    "$0" "$release" "$folder" "$@"
+fi
+mount --bind /proc "$folder/proc"
+mount --bind /dev "$folder/dev"
+
+# The files of the checkout as they are now, without ignored ones. Those that did not
+# change keep their times, so that nothing is compiled twice.
+checkout=$folder/root/remomask
+mkdir -p "$checkout"
+list=$(mktemp)
+trap 'rm -f "$list"' EXIT
+(cd "$source" && git ls-files -z --cached --others --exclude-standard |
+  while IFS= read -r -d '' file; do [ ! -e "$file" ] || printf '%s\0' "$file"; done) >"$list"
+(cd "$checkout" && find . -path ./build -prune -o -type f -print | sed 's|^\./||' | sort) |
+  comm -23 - <(tr '\0' '\n' <"$list" | sort) |
+  while IFS= read -r file; do rm -f "$checkout/$file"; done
+tr '\0' '\n' <"$list" | while IFS= read -r file; do
+  cmp -s "$source/$file" "$checkout/$file" ||
+    { mkdir -p "$checkout/$(dirname "$file")"; cp -p "$source/$file" "$checkout/$file"; }
+done
+
+if [ $# = 0 ]; then
+  set -- tools/test.sh
+fi
+printf -v command '%q ' "$@"
+env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 ${JOBS:+JOBS="$JOBS"} \
+  chroot "$folder" /bin/sh -c "cd /root/remomask && exec $command"
