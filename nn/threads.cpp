@@ -19,4 +19,9 @@ void set_compute_threads(int threads) {
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(threads);
 }
 
+// OpenMP's own number alone, which is one of the calling thread: at::set_num_threads() would change
+// it for the threads that are started later, too.
+SerialScope::SerialScope() : threads_before_(omp_get_max_threads()) { omp_set_num_threads(1); }
+SerialScope::~SerialScope() { omp_set_num_threads(threads_before_); }
+
 }  // namespace remomask::nn

@@ -9,6 +9,7 @@
 
 #include "generator/token_windows.h"
 #include "motion/features.h"
+#include "nn/threads.h"
 #include "pipeline/draft.h"
 #include "pipeline/motion_finish.h"
 #include "pipeline/stage_gate.h"
@@ -312,6 +313,7 @@ FillReport Generator::fill(TokenCanvas& canvas, int64_t first, int64_t last,
 }
 
 Motion Generator::decode(const at::Tensor& tokens, bool held_feet) const {
+  const nn::SerialScope serial;
   const motion::Features features = impl_->tokenizer.decode(tokens);
   Motion motion = motion::recover_motion(features, impl_->skeleton);
   smooth_over_time(motion, kDecodeSmoothing);

@@ -71,7 +71,7 @@ TEST_F(ClipChangesTest, NewCaptionsTakeTheVectorsOfTheClipWithThem) {
 }
 
 TEST_F(ClipChangesTest, NothingIsStoredOfChangesThatMakeNoSense) {
-  const auto before = tools::describe_database(database_);
+  const auto before = describe_database(database_);
   const int64_t generation = database_.generation();
   db::ClipChanges bad_split, bad_labels, bad_tag;
   bad_split.captions = {"new"};
@@ -86,7 +86,7 @@ TEST_F(ClipChangesTest, NothingIsStoredOfChangesThatMakeNoSense) {
   EXPECT_THROW(change(0, bad_split), Error);
   EXPECT_THROW(change(0, bad_labels), Error);
   EXPECT_THROW(database_.update_clip(ids_[2] + 1, {}), Error);
-  EXPECT_EQ(tools::describe_database(database_), before);
+  EXPECT_EQ(describe_database(database_), before);
   EXPECT_EQ(database_.generation(), generation);
   EXPECT_EQ(database_.embedded_clips("r"), ids_);
 }

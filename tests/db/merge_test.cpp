@@ -45,9 +45,9 @@ TEST_F(MergeTest, EverythingOfAClipComesAlong) {
   EXPECT_TRUE(report.duplicates.empty());
   EXPECT_TRUE(report.renamed.empty());
   EXPECT_TRUE(report.warnings.empty());
-  auto all = tools::describe_database(here_);
+  auto all = describe_database(here_);
   all.erase(0);
-  EXPECT_EQ(all, tools::describe_database(there_));
+  EXPECT_EQ(all, describe_database(there_));
   const int64_t id = *here_.find_name("new");
   EXPECT_EQ(here_.embedding("r", id)->motion, (std::vector<float>{1.f, 2.f}));
   EXPECT_EQ(here_.embedding("r", id)->text, (std::vector<float>{4.f}));
@@ -55,11 +55,11 @@ TEST_F(MergeTest, EverythingOfAClipComesAlong) {
   EXPECT_FALSE(here_.embedding("s", id));
   EXPECT_EQ(here_.match_captions("hop").at(0).clip_id, id);
   // Once more: all is known.
-  const auto before = tools::describe_database(here_);
+  const auto before = describe_database(here_);
   const db::MergeReport again = db::merge_database(here_, there_);
   EXPECT_EQ(again.added, 0);
   EXPECT_EQ(again.duplicates, (Pairs{{"new", "new"}, {"second", "second"}}));
-  EXPECT_EQ(tools::describe_database(here_), before);
+  EXPECT_EQ(describe_database(here_), before);
 }
 
 TEST_F(MergeTest, DuplicatesAreRefusedAndTakenNamesChange) {

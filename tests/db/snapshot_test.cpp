@@ -18,10 +18,10 @@ class SnapshotTest : public testing::Test {
     for (int i = 0; i < 20; ++i) {
       database.add_clip(named_clip("a" + std::to_string(i)), walking_motion(60, i));
     }
-    before_ = tools::describe_database(database);
+    before_ = describe_database(database);
   }
   nlohmann::json content(const std::string& path) {
-    return tools::describe_database(db::Database(path, db::OpenMode::read_only));
+    return describe_database(db::Database(path, db::OpenMode::read_only));
   }
   int files() {
     return static_cast<int>(std::distance(fs::directory_iterator(folder_.path()), {}));
@@ -69,7 +69,7 @@ TEST_F(SnapshotTest, RestoreBringsTheOldContentUnderANewIdentity) {
     EXPECT_EQ(db::restore_database(copy_, path_, true).set_aside, "");
     EXPECT_EQ(reader.clip_count(), 17);
   }
-  EXPECT_EQ(tools::describe_database(reader), before_);
+  EXPECT_EQ(describe_database(reader), before_);
   EXPECT_NE(reader.uuid(), uuid);
   EXPECT_TRUE(db::check_database(path_).defects.empty());
   // It can be written as before.

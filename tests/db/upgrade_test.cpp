@@ -42,7 +42,7 @@ class UpgradeTest : public testing::Test {
     other.captions = {"someone jumps."};
     database.add_clip(other, walking_motion(30, 6));
     database.store_embeddings("r", {{a, {1.f}, {2.f}, {3.f}}});
-    before_ = tools::describe_database(database);
+    before_ = describe_database(database);
     speed_ = database.clip(a).speed;
     generation_ = database.generation();
     uuid_ = database.uuid();
@@ -67,7 +67,7 @@ TEST_F(UpgradeTest, AnOldFileBecomesWhatANewOneIs) {
   ASSERT_NE(schema_of(path_), schema);
   const db::Database database(path_, db::OpenMode::read_write);
   EXPECT_EQ(schema_of(path_), schema);
-  EXPECT_EQ(tools::describe_database(database), before_);
+  EXPECT_EQ(describe_database(database), before_);
   EXPECT_EQ(database.clip(*database.find_name("a")).speed, speed_);
   EXPECT_GT(speed_, 0.1);
   EXPECT_EQ(database.generation(), generation_);
@@ -90,7 +90,7 @@ TEST_F(UpgradeTest, Format2IsReadAsItIs) {
   downgrade(2);
   const std::string schema = schema_of(path_);
   const db::Database database(path_, db::OpenMode::read_only);
-  EXPECT_EQ(tools::describe_database(database), before_);
+  EXPECT_EQ(describe_database(database), before_);
   EXPECT_EQ(database.embedded_clips("r").size(), 1u);
   EXPECT_FALSE(database.embedding_changes("r", 0));
   EXPECT_EQ(database.writer_of(database.generation()), "");
@@ -131,7 +131,7 @@ TEST_F(UpgradeTest, CommandReportsAndGivesPagesBack) {
   const db::UpgradeReport second = db::upgrade_database(path_);
   EXPECT_EQ(second.version_before, 3);
   const db::Database database(path_, db::OpenMode::read_only);
-  EXPECT_EQ(tools::describe_database(database), before_);
+  EXPECT_EQ(describe_database(database), before_);
   EXPECT_EQ(database.generation(), generation_);
 }
 

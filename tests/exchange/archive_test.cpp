@@ -123,7 +123,7 @@ TEST(Archive, ImportsLikeTheFolderInIt) {
   EXPECT_EQ(exchange::import_folder(database, options).files_known, 2);
   EXPECT_EQ(database.generation(), generation);
   exchange::import_folder(other, options);
-  EXPECT_EQ(tools::describe_database(database), tools::describe_database(other));
+  EXPECT_EQ(describe_database(database), describe_database(other));
   EXPECT_EQ(database.clips()[0].source, "walks");
   EXPECT_EQ(database.clips()[0].captions, (std::vector<std::string>{"one"}));
 }

@@ -126,7 +126,7 @@ TEST(Import, ThreadsAndOrderDoNotMatter) {
   exchange::import_folder(one, options);
   options.threads = 7;
   exchange::import_folder(many, options);
-  EXPECT_EQ(tools::describe_database(one), tools::describe_database(many));
+  EXPECT_EQ(describe_database(one), describe_database(many));
 }
 
 TEST(Import, ChangedCaptionsReplaceTheClip) {
@@ -151,10 +151,10 @@ TEST(Import, RemovedClipsComeBack) {
   const exchange::ImportOptions options = make_walks(folder, 2, ".npy");
   db::Database database(folder / "d", db::OpenMode::create);
   exchange::import_folder(database, options);
-  const nlohmann::json before = tools::describe_database(database);
+  const nlohmann::json before = describe_database(database);
   EXPECT_EQ(database.remove_clips("walks", "walk_1001"), 1);
   EXPECT_EQ(exchange::import_folder(database, options).files_stored, 1);
-  EXPECT_EQ(tools::describe_database(database), before);
+  EXPECT_EQ(describe_database(database), before);
 }
 
 TEST(Import, MissingAndExtraCaptionsAreNamed) {
@@ -343,7 +343,7 @@ TEST(Import, InterruptedImportGoesOnToTheSameResult) {
   const exchange::ImportReport rest = exchange::import_folder(parts, options);
   EXPECT_EQ(rest.files_known, 11);
   EXPECT_EQ(rest.files_stored, 19);
-  EXPECT_EQ(tools::describe_database(parts), tools::describe_database(whole));
+  EXPECT_EQ(describe_database(parts), describe_database(whole));
 }
 
 TEST(Import, KilledImportGoesOnToTheSameResult) {
@@ -371,7 +371,7 @@ TEST(Import, KilledImportGoesOnToTheSameResult) {
   EXPECT_EQ(killed.clip_count(), 64);
   EXPECT_EQ(exchange::import_folder(killed, options).files_stored, 16);
   exchange::import_folder(whole, options);
-  EXPECT_EQ(tools::describe_database(killed), tools::describe_database(whole));
+  EXPECT_EQ(describe_database(killed), describe_database(whole));
 }
 
 TEST(Import, WrongOptionsAreNamed) {

@@ -31,7 +31,7 @@ struct TinyModel {
   training::GeneratorData data;
 
   TinyModel() {
-    const auto clips = training::captioned_clips();
+    const auto clips = captioned_clips();
     const training::ModelConfig config = training::model_preset("tiny");
     const auto trainer = [](const std::string& name) {
       training::TrainerOptions options;

@@ -113,7 +113,7 @@ TEST(Physical, SummaryLeavesBrokenMotionsOut) {
   two.jerk = 20;
   two.penetration_max = 0.03;
   broken.finite = false;
-  const pipeline::PhysicalSummary summary = summarise_physical({one, broken, two});
+  const pipeline::PhysicalSummary summary = pipeline::summarise_physical({one, broken, two});
   EXPECT_EQ(summary.motions, 3);
   EXPECT_EQ(summary.not_finite, 1);
   EXPECT_FALSE(summary.values.finite);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "search/filter.h"
 #include "tests/db/db_test_tools.h"
 #include "tests/index/index_test_tools.h"
 

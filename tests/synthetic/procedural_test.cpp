@@ -240,7 +240,7 @@ TEST(Procedural, ManneredGaitsShowTheirManner) {
   EXPECT_GT(
       std::min(joint_position(tiptoe, 40, kAnkle).y(), joint_position(tiptoe, 40, kAnkle + 1).y()),
       0.10);
-  EXPECT_LT(neutral_clip("crouch-walk").joint_position(motion, 40, kRoot).y(), 0.75);
+  EXPECT_LT(joint_position(neutral_clip("crouch-walk").motion, 40, kRoot).y(), 0.75);
 }
 
 TEST(Procedural, CutGaitHasItsSpeedThroughout) {

@@ -70,7 +70,7 @@ TEST_F(EditCommandTest, WhatIsNotNamedStaysBitForBit) {
   EXPECT_EQ(difference(before, after, 50, 83, all), 0);
   EXPECT_EQ(difference(before, after, 20, 50, rest), 0);
   EXPECT_GT(difference(before, after, 20, 50, arm), 0.01);
-  const auto& cells = made["motions"][0]["cells"];
+  const auto& cells = made["motions"][0]["edit"]["cells"];
   ASSERT_EQ(cells.size(), 1u);
   EXPECT_EQ(cells[0]["part"], "left_arm");
   EXPECT_EQ(cells[0]["first"], 20);
@@ -102,16 +102,16 @@ TEST_F(EditCommandTest, TheBestOfSeveralIsKept) {
   const auto made =
       run_json({"edit", path("walk.npy"), "--prompt", "someone waves", "--cells", "1-2:arms",
                 "--cells", "3-end:right_leg", "--best-of", "3", "-o", path("best.npy")});
-  const auto& candidates = made["motions"][0]["candidates"];
+  const auto& candidates = made["motions"][0]["segments"][0]["candidates"];
   ASSERT_EQ(candidates.size(), 3u);
   EXPECT_GE(candidates[0]["score"].get<double>(), candidates[1]["score"].get<double>());
   EXPECT_GE(candidates[1]["score"].get<double>(), candidates[2]["score"].get<double>());
-  EXPECT_EQ(made["motions"][0]["cells"].size(), 3u);
+  EXPECT_EQ(made["motions"][0]["edit"]["cells"].size(), 3u);
   const auto chosen = run_json(
       {"generate", "someone jumps", "--seconds", "2", "--best-of", "3", "-o", path("jump3.npy")});
-  const auto& ranking = chosen["motions"][0]["candidates"];
+  const auto& ranking = chosen["motions"][0]["segments"][0]["candidates"];
   run_json({"generate", "someone jumps", "--seconds", "2", "--seed",
-            std::to_string(ranking[0]["seed"].get<uint64_t>()), "-o", path("jump1.npy")});
+            ranking[0]["seed"].get<std::string>(), "-o", path("jump1.npy")});
   EXPECT_EQ(read_joints(path("jump3.npy")), read_joints(path("jump1.npy")));
 }
 
@@ -132,12 +132,13 @@ TEST_F(EditCommandTest, LengthsAreEstimated) {
 TEST_F(EditCommandTest, ScriptsBecomeOneMotion) {
   write_file_atomically(path("script.txt"),
                         "# two sentences\n2.3  a person walks forward\n1.6 someone waves\n");
-  const auto made = run_json({"generate", "--script", path("script.txt"), "-o", path("s.npy")});
+  const auto made =
+      run_json({"generate", "--script", path("script.txt"), "-o", path("s.npy")})["motions"][0];
   EXPECT_EQ(made["frames"], 46 + 32);
   EXPECT_EQ(made["segments"].size(), 2u);
   EXPECT_EQ(made["segments"][1]["first"], 46);
   EXPECT_FALSE(made["segments"][0]["evidence"].empty());
-  EXPECT_GT(made["seams_to_real"].get<double>(), 0);
+  EXPECT_GT(made["script"]["seams_to_real"].get<double>(), 0);
   EXPECT_EQ(read_joints(path("s.npy")).size(), 78u * 66u);
   write_file_atomically(path("bad.txt"), "walk\n0.2 run\n");
   const ProgramResult bad =

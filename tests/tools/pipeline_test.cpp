@@ -109,18 +109,22 @@ TEST_F(PipelineTest, GeneratedFileCarriesItsEvidence) {
       run_json(with_model({"generate", "someone kicks with the left leg", "--seed", "3", "-o",
                            path("kick.bvh"), "--sheet", path("kick.png")}));
   const auto& motion = made["motions"][0];
-  ASSERT_FALSE(motion["evidence"].empty());
-  EXPECT_TRUE(motion["evidence"][0].contains("licence"));
-  const auto stored = nlohmann::json::parse(read_file(path("kick.bvh.json")));
-  EXPECT_EQ(stored["prompt"], "someone kicks with the left leg");
-  EXPECT_EQ(stored["seed"], "3");
-  EXPECT_EQ(nlohmann::json::parse(stored["evidence"].get<std::string>()), motion["evidence"]);
+  const auto& segment = motion["segments"][0];
+  ASSERT_FALSE(segment["evidence"].empty());
+  EXPECT_TRUE(segment["evidence"][0].contains("licence"));
+  EXPECT_EQ(segment["sentence"], "someone kicks with the left leg");
+  EXPECT_EQ(motion["seed"], "3");
+  // The sidecar is the answer without the place and time of its making.
+  auto stored = nlohmann::json::parse(read_file(path("kick.bvh.json")));
+  stored["file"] = motion["file"];
+  stored["seconds_of_work"] = motion["seconds_of_work"];
+  EXPECT_EQ(stored, motion);
   EXPECT_EQ(read_file(path("kick.png")).substr(1, 3), "PNG");
   const auto back = run_json({"convert", path("kick.bvh"), path("kick.npy")});
   EXPECT_EQ(back["frames"], motion["frames"]);
   const auto alone = run_json(with_model({"generate", "someone kicks with the left leg", "--seed",
                                           "3", "--no-retrieval", "-o", path("alone.bvh")}));
-  EXPECT_TRUE(alone["motions"][0]["evidence"].empty());
+  EXPECT_TRUE(alone["motions"][0]["segments"][0]["evidence"].empty());
   EXPECT_NE(read_file(path("alone.bvh")), read_file(path("kick.bvh")));
 }
 

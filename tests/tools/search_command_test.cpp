@@ -50,10 +50,10 @@ TEST(SearchCommand, ReadsMotionFilesAndPiecesOfThem) {
 }
 
 TEST(SearchCommand, SaysWhenNothingFits) {
-  const ProgramResult none = run_program({"search", "a walk", "--least-similarity", "1"});
+  const ProgramResult none = run_program({"search", "a walk", "--min-similarity", "1"});
   EXPECT_EQ(none.exit_code, 0);
   EXPECT_NE(none.output.find("nothing fits"), std::string::npos) << none.output;
-  const auto json = run_json({"search", "a walk", "--least-similarity", "1"});
+  const auto json = run_json({"search", "a walk", "--min-similarity", "1"});
   EXPECT_TRUE(json["hits"].empty());
   EXPECT_LT(json["refused"]["similarity"], 1);
   const ProgramResult filtered = run_program({"search", "a walk", "--min-seconds", "500"});
@@ -84,8 +84,8 @@ TEST(SearchCommand, RefusesBadQueriesClearly) {
       {{"search", "walk", "--captions"}, "captions are looked up for"},
       {{"search", "--", "-walk -run"}, "not wanted"},
       {{"search", "walk", "--boost-words", "..."}, "no word"},
-      {{"search", "walk", "--least-probability", "2"}, "no probability"},
-      {{"search", "walk", "--least-probability", "0.5"}, "evaluate calibration"},
+      {{"search", "walk", "--min-probability", "2"}, "no probability"},
+      {{"search", "walk", "--min-probability", "0.5"}, "evaluate calibration"},
       {{"search", "--like-clip", kStored, "--parts", "arms", "--moments"}, "whole body"},
   };
   for (const auto& [arguments, expected] : cases) {
