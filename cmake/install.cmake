@@ -1,57 +1,63 @@
-# The program, its models, and what other projects link: find_package(remomask).
-
-# remomask_headers(result header ...): these and all that they include.
-function(remomask_headers result)
-  set(waiting ${ARGN})
-  set(found "")
-  while(waiting)
-    list(POP_FRONT waiting header)
-    if(header IN_LIST found)
-      continue()
-    endif()
-    list(APPEND found ${header})
-    file(STRINGS ${PROJECT_SOURCE_DIR}/${header} lines REGEX "^#include \"")
-    foreach(line IN LISTS lines)
-      string(REGEX REPLACE "^#include \"([^\"]*)\".*" "\\1" included "${line}")
-      list(APPEND waiting ${included})
-    endforeach()
-  endwhile()
-  set(${result} ${found} PARENT_SCOPE)
-endfunction()
-
-install(TARGETS remomask RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES
-    models/README.md models/base.safetensors models/procedural.sqlite
-    models/procedural.sqlite.index
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/remomask)
-
-remomask_headers(headers
-  base/error.h
-  base/progress.h
-  db/database.h
-  db/import.h
-  generator/pipeline.h
-  index/motion_search.h
-  index/update_index.h
-  motion/motion_file.h
-  retriever/embed_database.h)
-foreach(header IN LISTS headers)
-  get_filename_component(room ${header} DIRECTORY)
-  install(FILES ${header} DESTINATION ${REMOMASK_INCLUDE}/${room})
-endforeach()
-
-install(TARGETS
-    remomask_base remomask_startup remomask_motion remomask_db remomask_nn remomask_text
-    remomask_retriever remomask_index remomask_generator
-  EXPORT remomaskTargets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/remomask)
-set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/remomask)
-install(EXPORT remomaskTargets NAMESPACE remomask:: DESTINATION ${package_folder})
+# What a user gets: the program with models, pages and completion; the library with headers,
+# CMake package and pkg-config file.
 include(CMakePackageConfigHelpers)
-write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/remomaskConfigVersion.cmake
+set(data ${CMAKE_INSTALL_DATADIR}/remomask)
+set(documents ${CMAKE_INSTALL_DATADIR}/doc/remomask)
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/remomask)
+
+# The library.
+install(DIRECTORY include/remomask DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(TARGETS remomask_library EXPORT remomaskTargets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT remomaskTargets NAMESPACE remomask:: DESTINATION ${package})
+configure_package_config_file(cmake/remomaskConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/remomaskConfig.cmake INSTALL_DESTINATION ${package}
+  NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/remomaskConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES
-    cmake/remomaskConfig.cmake cmake/dependencies.cmake
-    ${CMAKE_CURRENT_BINARY_DIR}/remomaskConfigVersion.cmake
-  DESTINATION ${package_folder})
+    ${PROJECT_BINARY_DIR}/remomaskConfig.cmake ${PROJECT_BINARY_DIR}/remomaskConfigVersion.cmake
+  DESTINATION ${package})
+if(NOT BUILD_SHARED_LIBS)
+  install(FILES cmake/dependencies.cmake DESTINATION ${package})
+  set(pc_static_flag " -DREMOMASK_STATIC")
+  set(pc_static_libraries
+    " -ltorch -ltorch_cpu -lc10 -lfaiss -llapack -lblas -lgomp -ldl -lpthread")
+  set(pc_static_requires " sqlite3 fmt libxxhash libarchive cairo")
+endif()
+file(RELATIVE_PATH pc_prefix
+  ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(cmake/remomask.pc.in ${PROJECT_BINARY_DIR}/remomask.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/remomask.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# The program. Its core is loaded only by the commands that need the networks.
+install(TARGETS remomask RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(TARGET remomask-core)
+  install(TARGETS remomask-core LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/remomask)
+endif()
+install(FILES
+    models/base.safetensors models/evaluator.safetensors models/procedural.sqlite
+    models/procedural.sqlite.index models/README.md formats/skeleton_maps.json
+  DESTINATION ${data})
+
+# Pages and completion, from the help texts of the program that was just built.
+set(pages ${PROJECT_BINARY_DIR}/pages)
+add_custom_command(
+  OUTPUT ${pages}/remomask.1 ${pages}/remomask.bash
+  COMMAND ${PROJECT_SOURCE_DIR}/tools/make_pages.sh $<TARGET_FILE:remomask> ${pages}
+  DEPENDS remomask tools/make_pages.sh
+  COMMENT "Manual page and completion"
+  VERBATIM)
+add_custom_target(remomask_pages ALL DEPENDS ${pages}/remomask.1 ${pages}/remomask.bash)
+if(TARGET remomask-core)
+  add_dependencies(remomask_pages remomask-core)
+endif()
+install(FILES ${pages}/remomask.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${pages}/remomask.bash
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME remomask)
+
+install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${documents})
+install(DIRECTORY docs examples DESTINATION ${documents})
+
+include(cmake/package.cmake)
