@@ -19,7 +19,8 @@ nn::ModelStage random_retriever_stage(retriever::RetrieverConfig config) {
     for (const std::string& caption : clip.captions)
       captions.push_back(text::normalise_caption(caption));
   }
-  encoders::TextEncoderConfig text = encoders::text_encoder_preset(config.preset);
+  encoders::TextEncoderConfig text =
+      encoders::text_encoder_preset(nn::parse_preset(config.preset).size);
   text.vocabulary = text::train_wordpiece(captions, text.vocabulary_size);
   config.text_tower = encoders::TextEncoder(text).config();
   return {"retriever", nlohmann::json(config),

@@ -21,7 +21,8 @@ constexpr int kFrames = static_cast<int>(generator::kLongestTokenMap * tokenizer
 const tokenizer::Tokenizer& base_tokenizer() {
   static const tokenizer::Tokenizer tokenizer = [] {
     torch::manual_seed(1);
-    return tokenizer::Tokenizer(random_tokenizer_stage(training::model_preset("base").tokenizer));
+    return tokenizer::Tokenizer(
+        random_tokenizer_stage(training::model_preset(nn::parse_preset("base")).tokenizer));
   }();
   return tokenizer;
 }

@@ -7,34 +7,35 @@
 
 namespace remomask::encoders {
 
-TextEncoderConfig text_encoder_preset(const std::string& preset) {
+TextEncoderConfig text_encoder_preset(nn::Size size) {
   TextEncoderConfig config;
-  if (preset == "base") return config;
-  if (preset == "tiny") {
-    config.width = 64;
-    config.layers = 2;
-    config.heads = 2;
-    config.hidden = 128;
-    config.vocabulary_size = 600;
-    return config;
+  switch (size) {
+    case nn::Size::tiny:
+      config.width = 64;
+      config.layers = 2;
+      config.heads = 2;
+      config.hidden = 128;
+      config.vocabulary_size = 600;
+      break;
+    case nn::Size::small:
+      config.width = 128;
+      config.layers = 2;
+      config.heads = 4;
+      config.hidden = 256;
+      config.vocabulary_size = 1000;
+      break;
+    case nn::Size::base:
+    case nn::Size::momask:
+      break;
+    case nn::Size::paper:
+      config.width = 768;
+      config.layers = 6;
+      config.heads = 12;
+      config.hidden = 3072;
+      config.vocabulary_size = 8000;
+      break;
   }
-  if (preset == "small") {
-    config.width = 128;
-    config.layers = 2;
-    config.heads = 4;
-    config.hidden = 256;
-    config.vocabulary_size = 1000;
-    return config;
-  }
-  if (preset == "paper") {
-    config.width = 768;
-    config.layers = 6;
-    config.heads = 12;
-    config.hidden = 3072;
-    config.vocabulary_size = 8000;
-    return config;
-  }
-  throw Error("there is no text encoder preset '" + preset + "'; use tiny, small, base or paper");
+  return config;
 }
 
 void to_json(nlohmann::json& json, const TextEncoderConfig& config) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "nn/layers.h"
+#include "nn/preset.h"
 #include "text/wordpiece.h"
 
 namespace remomask::encoders {
@@ -50,8 +51,8 @@ struct TextEncoderConfig {
   std::vector<std::string> vocabulary;  ///< WordPiece tokens by id
 };
 
-/// Sizes of preset "tiny", "small", "base" or "paper"; no vocabulary yet.
-TextEncoderConfig text_encoder_preset(const std::string& preset);
+/// Sizes without a vocabulary. MoMask's published sizes go with the base tower.
+TextEncoderConfig text_encoder_preset(nn::Size size);
 
 void to_json(nlohmann::json& json, const TextEncoderConfig& config);
 void from_json(const nlohmann::json& json, TextEncoderConfig& config);

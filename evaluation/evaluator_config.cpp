@@ -4,25 +4,29 @@
 
 namespace remomask::evaluation {
 
-EvaluatorConfig evaluator_preset(const std::string& preset) {
+EvaluatorConfig evaluator_preset(nn::Size size) {
   EvaluatorConfig config;
-  config.preset = preset;
-  if (preset == "base") return config;
-  if (preset == "tiny") {
-    config.movement_width = 32;
-    config.motion_hidden = config.text_hidden = 32;
-    config.word_width = 16;
-    config.embedding = 16;
-    return config;
+  config.preset = nn::size_name(size);
+  switch (size) {
+    case nn::Size::tiny:
+      config.movement_width = 32;
+      config.motion_hidden = config.text_hidden = 32;
+      config.word_width = 16;
+      config.embedding = 16;
+      return config;
+    case nn::Size::base:
+      return config;
+    case nn::Size::paper:
+      config.movement_width = config.text_hidden = config.embedding = 512;
+      config.motion_hidden = 1024;
+      config.word_width = 300;
+      config.root_weight = 25;
+      return config;
+    case nn::Size::small:
+    case nn::Size::momask:
+      break;
   }
-  if (preset == "paper") {
-    config.movement_width = config.text_hidden = config.embedding = 512;
-    config.motion_hidden = 1024;
-    config.word_width = 300;
-    config.root_weight = 25;
-    return config;
-  }
-  throw Error("there is no evaluator preset '" + preset + "'; use tiny, base or paper");
+  throw Error("there is no evaluator of size \"" + config.preset + "\"; use tiny, base or paper");
 }
 
 void to_json(nlohmann::json& json, const EvaluatorConfig& config) {

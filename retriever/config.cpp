@@ -25,37 +25,38 @@ const char* queues_name(Queues queues) {
   return "both";
 }
 
-RetrieverConfig retriever_preset(const std::string& preset) {
+RetrieverConfig retriever_preset(nn::Size size) {
   RetrieverConfig config;
-  config.preset = preset;
-  if (preset == "base") return config;
-  if (preset == "tiny") {
-    config.width = 32;
-    config.layers = 1;
-    config.heads = 2;
-    config.hidden = 64;
-    config.embedding = 64;
-    config.part_embedding = 16;
-    return config;
+  switch (size) {
+    case nn::Size::tiny:
+      config.width = 32;
+      config.layers = 1;
+      config.heads = 2;
+      config.hidden = 64;
+      config.embedding = 64;
+      config.part_embedding = 16;
+      break;
+    case nn::Size::small:
+      config.width = 64;
+      config.layers = 2;
+      config.hidden = 128;
+      config.embedding = 128;
+      config.part_embedding = 32;
+      break;
+    case nn::Size::base:
+    case nn::Size::momask:
+      return config;
+    case nn::Size::paper:
+      config.patch = 1;
+      config.width = 512;
+      config.layers = 4;
+      config.hidden = 1024;
+      config.dropout = 0.5;
+      config.embedding = 512;
+      break;
   }
-  if (preset == "small") {
-    config.width = 64;
-    config.layers = 2;
-    config.hidden = 128;
-    config.embedding = 128;
-    config.part_embedding = 32;
-    return config;
-  }
-  if (preset == "paper") {
-    config.patch = 1;
-    config.width = 512;
-    config.layers = 4;
-    config.hidden = 1024;
-    config.dropout = 0.5;
-    config.embedding = 512;
-    return config;
-  }
-  throw Error("there is no retriever preset '" + preset + "'; use tiny, small, base or paper");
+  config.preset = nn::size_name(size);
+  return config;
 }
 
 void use_whole_body_encoder(RetrieverConfig& config) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "motion/features.h"
+#include "nn/preset.h"
 
 namespace remomask::retriever {
 
@@ -28,8 +29,8 @@ struct RetrieverConfig {
   nlohmann::json text_tower;  ///< of TextTower::config(); empty: made by the training
 };
 
-/// "tiny" (tests), "small", "base" (default) or "paper" (sizes of the publication).
-RetrieverConfig retriever_preset(const std::string& preset);
+/// The sizes of a retriever. MoMask's published sizes go with the base retriever.
+RetrieverConfig retriever_preset(nn::Size size);
 
 /// One encoder over the whole body in place of six over its parts, as wide as
 /// makes about as many weights. The six part vectors are then six heads of the

@@ -47,7 +47,7 @@ void read_more_captions(const std::string& path, std::vector<std::string>& capti
 
 /// The recipe with what the user wants otherwise, the same for every stage.
 training::TrainingRecipe chosen_recipe(const TrainOptions& options) {
-  training::TrainingRecipe recipe = training::training_recipe(options.preset);
+  training::TrainingRecipe recipe = training::training_recipe(nn::parse_preset(options.preset));
   recipe.retriever_training.queues = retriever::parse_queues(options.queues);
   if (options.queue_size) recipe.retriever_training.queue_size = *options.queue_size;
   if (options.same_label_weight) {
@@ -73,7 +73,8 @@ training::TrainingSplits load_clips(const TrainOptions& options) {
 /// Trains the evaluator, which is no part of a model.
 void train_judge(const TrainOptions& options, const training::TrainingSplits& clips,
                  const std::string& path, const Monitor& monitor) {
-  training::EvaluatorTrainingOptions training(options.preset);
+  const nn::Size size = nn::parse_preset(options.preset).size;
+  training::EvaluatorTrainingOptions training(size);
   training::TrainerOptions& trainer = training.trainer;
   trainer.steps = options.steps.value_or(trainer.steps);
   trainer.learning_rate = options.learning_rate.value_or(trainer.learning_rate);
@@ -82,7 +83,7 @@ void train_judge(const TrainOptions& options, const training::TrainingSplits& cl
   trainer.checkpoint_path = path + ".checkpoint";
   training.batch = options.batch.value_or(training.batch);
   const nn::ModelStage stage = training::train_evaluator(
-      clips.train, clips.val, evaluation::evaluator_preset(options.preset), training, monitor);
+      clips.train, clips.val, evaluation::evaluator_preset(size), training, monitor);
   nn::save_model(path, {stage}, /*half=*/true);
   fs::remove(path + ".checkpoint");
   fs::remove(path + ".checkpoint.movement");
@@ -136,7 +137,7 @@ void register_train(CLI::App& app, Program& program) {
   command->add_option("-o,--output", options->folder, "folder of the stage files")->required();
   command->add_option("--preset", options->preset, "sizes of all networks")
       ->capture_default_str()
-      ->check(CLI::IsMember(training::model_presets()));
+      ->check(CLI::IsMember(nn::preset_names()));
   std::string variants;
   for (const lab::ModelVariant& variant : lab::model_variants()) variants += variant.name + ", ";
   command

@@ -23,8 +23,8 @@ struct EvaluatorTrainingOptions {
   double least_crop = 0.9;  ///< shortest random crop, share of the clip
   double word_drop = 0.1;   ///< share of the words read as unknown
   int64_t validation_every = 100;
-  /// Defaults of a preset.
-  explicit EvaluatorTrainingOptions(const std::string& preset = "base");
+  /// Defaults for a network of this size.
+  explicit EvaluatorTrainingOptions(nn::Size size = nn::Size::base);
 };
 
 /// Pairs (text i, motion j) of a batch that may count as mismatches: another

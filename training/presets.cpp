@@ -79,19 +79,7 @@ void momask_sizes(ModelConfig& model) {
   model.masked.attention = model.residual.attention = "joined";
 }
 
-constexpr const char* kOneRowPrefix = "momask-";
-
 }  // namespace
-
-const std::vector<std::string>& model_presets() {
-  static const std::vector<std::string> names = {
-      "tiny", "small", "base", "paper", "momask", "momask-tiny", "momask-small", "momask-base"};
-  return names;
-}
-
-std::string preset_size(const std::string& preset) {
-  return preset.starts_with(kOneRowPrefix) ? preset.substr(std::strlen(kOneRowPrefix)) : preset;
-}
 
 void use_one_row(ModelConfig& model) {
   tokenizer::TokenizerConfig& tokenizer = model.tokenizer;
@@ -106,34 +94,35 @@ void use_one_row(ModelConfig& model) {
   model.masked.attention = model.residual.attention = "joined";
 }
 
-ModelConfig model_preset(const std::string& preset) {
-  const auto& names = model_presets();
-  if (std::find(names.begin(), names.end(), preset) == names.end()) {
-    throw Error(
-        fmt::format("there is no preset \"{}\"; use one of {}", preset, fmt::join(names, ", ")));
-  }
+ModelConfig model_preset(const nn::Preset& preset) {
   ModelConfig model;
   model.masked.sequence_hits = 2;
-  const std::string size = preset_size(preset);
-  // The MoMask baseline has no retrieval; its text vector comes from the base retriever.
-  if (size == "tiny") {
-    tiny_sizes(model);
-  } else if (size == "small") {
-    small_sizes(model);
-  } else if (size == "paper") {
-    paper_sizes(model);
-  } else if (size == "momask") {
-    momask_sizes(model);
+  switch (preset.size) {
+    case nn::Size::tiny:
+      tiny_sizes(model);
+      break;
+    case nn::Size::small:
+      small_sizes(model);
+      break;
+    case nn::Size::base:
+      break;
+    case nn::Size::paper:
+      paper_sizes(model);
+      break;
+    case nn::Size::momask:
+      momask_sizes(model);
+      break;
   }
-  model.retriever = retriever::retriever_preset(size == "momask" ? "base" : size);
-  model.tokenizer.preset = model.masked.preset = model.residual.preset = preset;
+  // MoMask has no retrieval; its text vector comes from the base retriever.
+  model.retriever = retriever::retriever_preset(preset.size);
+  model.tokenizer.preset = model.masked.preset = model.residual.preset = nn::preset_name(preset);
   for (int64_t* width : {&model.masked.embedding_width, &model.residual.embedding_width}) {
     *width = model.retriever.embedding;
   }
   model.masked.rows = model.residual.rows = model.tokenizer.rows;
   model.masked.codes = model.residual.codes = model.tokenizer.codes;
   model.residual.levels = model.tokenizer.levels;
-  if (size != preset) use_one_row(model);
+  if (preset.one_row) use_one_row(model);
   return model;
 }
 

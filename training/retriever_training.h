@@ -27,8 +27,8 @@ struct RetrieverTrainingOptions {
   /// away); 0: nothing, 1: as much as any other clip.
   double same_meaning_weight = 1;
   int64_t validation_every = 200;
-  /// Defaults of a preset: sizes of queue and run that fit it.
-  explicit RetrieverTrainingOptions(const std::string& preset = "base");
+  /// Defaults for a network of this size: queues and a run that fit it.
+  explicit RetrieverTrainingOptions(nn::Size size = nn::Size::base);
 };
 
 /// What decides what is learnt, but for TrainerOptions: identifies a run.

@@ -8,28 +8,30 @@ namespace remomask::training {
 
 namespace {
 
-bool has_published_size(const std::string& size) { return size == "paper" || size == "momask"; }
+bool has_published_size(nn::Size size) {
+  return size == nn::Size::paper || size == nn::Size::momask;
+}
 
-TextTrainingOptions text_training_preset(const std::string& size) {
+TextTrainingOptions text_training_preset(nn::Size size) {
   TextTrainingOptions options;
   options.trainer.steps = 800;
-  if (size == "tiny") {
+  if (size == nn::Size::tiny) {
     options.trainer.steps = 40;
     options.batch = 16;
-  } else if (size == "small") {
+  } else if (size == nn::Size::small) {
     options.trainer.steps = 500;
   }
   return options;
 }
 
-TokenizerTrainingOptions tokenizer_training_preset(const std::string& size) {
+TokenizerTrainingOptions tokenizer_training_preset(nn::Size size) {
   TokenizerTrainingOptions options;
-  if (size == "tiny") {
+  if (size == nn::Size::tiny) {
     options.trainer.steps = 120;
     options.trainer.learning_rate = 2e-3;
     options.batch_frames = 512;
     options.validate_every = 60;
-  } else if (size == "small") {
+  } else if (size == nn::Size::small) {
     options.trainer.steps = 2000;
     options.trainer.learning_rate = 2e-3;
     options.batch_frames = 1024;
@@ -43,8 +45,8 @@ TokenizerTrainingOptions tokenizer_training_preset(const std::string& size) {
   return options;
 }
 
-TransformerTrainingOptions transformer_preset(const std::string& size, const char* stage,
-                                              int64_t base_steps, int64_t small_steps) {
+TransformerTrainingOptions transformer_preset(nn::Size size, const char* stage, int64_t base_steps,
+                                              int64_t small_steps) {
   TransformerTrainingOptions options;
   options.trainer.stage_name = stage;
   options.trainer.steps = base_steps;
@@ -52,12 +54,12 @@ TransformerTrainingOptions transformer_preset(const std::string& size, const cha
   options.trainer.learning_rate = 6e-4;
   options.trainer.warmup_steps = 100;
   options.trainer.ema_decay = 0.99;
-  if (size == "tiny") {
+  if (size == nn::Size::tiny) {
     options.trainer.steps = 60;
     options.trainer.learning_rate = 2e-3;
     options.batch = 16;
     options.validate_every = 30;
-  } else if (size == "small") {
+  } else if (size == nn::Size::small) {
     options.trainer.steps = small_steps;
     options.trainer.learning_rate = 1e-3;
     options.batch = 16;
@@ -66,14 +68,10 @@ TransformerTrainingOptions transformer_preset(const std::string& size, const cha
     options.trainer.learning_rate = 2e-4;
     options.trainer.warmup_steps = 2000;
     options.trainer.ema_decay = 0.999;
-    options.batch = size == "paper" ? 256 : 64;
+    options.batch = size == nn::Size::paper ? 256 : 64;
   }
   return options;
 }
-
-/// The sizes of the text tower that `size` is trained with; MoMask's published
-/// sizes go with the base tower.
-std::string tower_size(const std::string& size) { return size == "momask" ? "base" : size; }
 
 nlohmann::json trainer_description(const TrainerOptions& options) {
   return {{"steps", options.steps},
@@ -105,14 +103,14 @@ nlohmann::json stage_config(const TrainingRecipe& recipe, const std::string& sta
 
 }  // namespace
 
-TrainingRecipe training_recipe(const std::string& preset) {
+TrainingRecipe training_recipe(const nn::Preset& preset) {
   TrainingRecipe recipe;
-  recipe.preset = preset;
+  recipe.preset = nn::preset_name(preset);
   recipe.model = model_preset(preset);
-  const std::string size = preset_size(preset);
-  recipe.text = encoders::text_encoder_preset(tower_size(size));
+  const nn::Size size = preset.size;
+  recipe.text = encoders::text_encoder_preset(size);
   recipe.text_training = text_training_preset(size);
-  recipe.retriever_training = RetrieverTrainingOptions(tower_size(size));
+  recipe.retriever_training = RetrieverTrainingOptions(size);
   recipe.tokenizer_training = tokenizer_training_preset(size);
   recipe.masked_training = transformer_preset(size, "masked", 5600, 2800);
   recipe.residual_training = transformer_preset(size, "residual", 1500, 1500);

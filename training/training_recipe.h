@@ -27,8 +27,8 @@ struct TrainingRecipe {
   SamplingOptions sampling;
 };
 
-/// The recipe of a preset (presets.h). Throws Error for an unknown name.
-TrainingRecipe training_recipe(const std::string& preset);
+/// The recipe of a preset.
+TrainingRecipe training_recipe(const nn::Preset& preset);
 
 /// The stages of the recipe in the order of training: text, retriever,
 /// tokenizer, masked, and residual unless there is one level only.

@@ -66,13 +66,13 @@ TEST(RetrievalProtocols, CorrectPairsByHand) {
     }
     return rows;
   };
-  using generator::Rows = std::vector<std::string>;
+  using Rows = std::vector<std::string>;
   EXPECT_EQ(correct(evaluation::RetrievalProtocol::all),
-            (generator::Rows{"10000", "01000", "00100", "00010", "00001"}));
+            (Rows{"10000", "01000", "00100", "00010", "00001"}));
   EXPECT_EQ(correct(evaluation::RetrievalProtocol::duplicates),
-            (generator::Rows{"11000", "11000", "00100", "00011", "00011"}));
+            (Rows{"11000", "11000", "00100", "00011", "00011"}));
   EXPECT_EQ(correct(evaluation::RetrievalProtocol::threshold),
-            (generator::Rows{"11100", "11100", "11100", "00010", "00001"}));
+            (Rows{"11100", "11100", "11100", "00010", "00001"}));
 }
 
 TEST(RetrievalProtocols, FiguresByHand) {

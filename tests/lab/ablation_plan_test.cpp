@@ -124,13 +124,14 @@ TEST(AblationPlan, RefusesWhatCannotBeCompared) {
 }
 
 TEST(AblationCost, GrowsWithSizesAndSteps) {
-  const training::TrainingRecipe tiny = training::training_recipe("tiny"),
-                                 base = training::training_recipe("base");
+  const training::TrainingRecipe tiny = training::training_recipe(nn::parse_preset("tiny")),
+                                 base = training::training_recipe(nn::parse_preset("base"));
   for (const std::string& stage : training::recipe_stages(tiny)) {
     EXPECT_LT(lab::training_cost(tiny, stage), lab::training_cost(base, stage)) << stage;
     training::TrainingRecipe twice = tiny;
     training::stage_trainer(twice, stage).steps *= 2;
-    EXPECT_NEAR(lab::training_cost(twice, stage), 2 * training_cost(tiny, stage), 1e-9) << stage;
+    EXPECT_NEAR(lab::training_cost(twice, stage), 2 * lab::training_cost(tiny, stage), 1e-9)
+        << stage;
   }
   EXPECT_LT(lab::trial_cost(tiny, tiny.sampling, 10), lab::trial_cost(base, base.sampling, 10));
 }

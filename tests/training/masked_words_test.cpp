@@ -51,8 +51,8 @@ TEST(MaskedWords, TrainingLearnsTheGrammarAndRepeatsExactly) {
   options.batch = 32;
   options.validation_every = 60;
   const auto run = [&] {
-    return training::train_text_encoder(grammar_captions(), encoders::text_encoder_preset("tiny"),
-                                        options, {});
+    return training::train_text_encoder(grammar_captions(),
+                                        encoders::text_encoder_preset(nn::Size::tiny), options, {});
   };
   const nn::ModelStage first = run();
   EXPECT_EQ(first.kind, "text");
@@ -65,9 +65,9 @@ TEST(MaskedWords, TrainingLearnsTheGrammarAndRepeatsExactly) {
 }
 
 TEST(MaskedWords, TooFewCaptionsAreAnError) {
-  EXPECT_THROW(
-      training::train_text_encoder({"a", "b", "b"}, encoders::text_encoder_preset("tiny"), {}, {}),
-      Error);
+  EXPECT_THROW(training::train_text_encoder({"a", "b", "b"},
+                                            encoders::text_encoder_preset(nn::Size::tiny), {}, {}),
+               Error);
 }
 
 }  // namespace
