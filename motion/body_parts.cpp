@@ -28,10 +28,10 @@ constexpr BodyPartMap kKitParts = {{{{17, 18, 19, 20},
 }  // namespace
 
 const BodyPartMap& body_parts(const Skeleton& skeleton) {
-  if (skeleton.name == "humanml3d") return kHumanmlParts;
-  if (skeleton.name == "kit") return kKitParts;
-  throw Error("there is no table of body parts for the skeleton '" + skeleton.name +
-              "'; use humanml3d or kit");
+  if (skeleton.joints() == humanml_skeleton().joints()) return kHumanmlParts;
+  if (skeleton.joints() == kit_skeleton().joints()) return kKitParts;
+  throw Error("there is no table of body parts for the skeleton \"" + skeleton.name +
+              "\"; use humanml3d or kit");
 }
 
 std::vector<int> joint_parts(const Skeleton& skeleton) {

@@ -16,6 +16,7 @@
 #include "pipeline/influence.h"
 #include "pipeline/length_estimate.h"
 #include "pipeline/long_motion.h"
+#include "pipeline/motion_generator.h"
 #include "remomask/error.h"
 #include "search/motion_search.h"
 #include "search/query.h"

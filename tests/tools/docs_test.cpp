@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 const std::string kDocs = REMOMASK_SOURCE_DIR "/docs/";
 const std::string kPage = kDocs + "search.md";
-const std::string kExample = REMOMASK_SOURCE_DIR "/examples/search_library.cpp";
+const std::string kExample = REMOMASK_SOURCE_DIR "/examples/search/main.cpp";
 const std::string kModels = REMOMASK_SOURCE_DIR "/models";
 
 struct Block {
@@ -95,18 +95,16 @@ TEST(SearchPage, ShowsTheExampleAsItIs) {
   }
 }
 
-TEST(SearchLibraryExample, FindsInTheShippedDatabase) {
+TEST(SearchSample, FindsInTheShippedDatabase) {
   const ScratchFolder scratch;
   std::string log;
-  const std::string example = "'" REMOMASK_EXAMPLE "' ";
+  const std::string example = "'" REMOMASK_SAMPLE "' ";
   ASSERT_EQ(run_shell(example + "$REMOMASK_MODELS/base.safetensors "
                                 "$REMOMASK_MODELS/procedural.sqlite 'a person jumps'",
                       scratch.path(""), log),
             0)
       << log;
   EXPECT_NE(log.find("1. procedural-jump"), std::string::npos) << log;
-  EXPECT_NE(log.find("described by: "), std::string::npos) << log;
-  EXPECT_NE(log.find("arms like it: "), std::string::npos) << log;
   EXPECT_EQ(run_shell(example, scratch.path(""), log), 2);
   EXPECT_EQ(run_shell(example + "nothing nowhere walk", scratch.path(""), log), 1);
   EXPECT_NE(log.find("nothing"), std::string::npos);

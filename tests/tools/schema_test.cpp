@@ -1,0 +1,109 @@
+// The answers of the program are what the schemas of docs/schema say.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "tests/tools/program_runner.h"
+
+namespace remomask {
+namespace {
+
+using nlohmann::json;
+
+json schema_file(const std::string& name) {
+  return json::parse(read_file(std::string(REMOMASK_SOURCE_DIR) + "/docs/schema/" + name));
+}
+
+bool has_type(const json& value, const std::string& type) {
+  return (type == "object" && value.is_object()) || (type == "array" && value.is_array()) ||
+         (type == "string" && value.is_string()) || (type == "boolean" && value.is_boolean()) ||
+         (type == "null" && value.is_null()) || (type == "number" && value.is_number()) ||
+         (type == "integer" && value.is_number_integer());
+}
+
+/// What of JSON Schema 2020-12 the files of docs/schema use; members that a schema does not name
+/// are refused, so that none is forgotten there. Returns what is wrong, or nothing.
+std::string find_fault(const json& schema, const json& value, const std::string& place) {
+  if (schema.contains("$ref")) return find_fault(schema_file(schema["$ref"]), value, place);
+  if (schema.contains("const") && value != schema["const"]) return place + ": another constant";
+  if (schema.contains("enum") &&
+      std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end()) {
+    return place + ": " + value.dump() + " is not listed";
+  }
+  if (schema.contains("anyOf")) {
+    std::string fault;
+    for (const json& one : schema["anyOf"]) {
+      fault = find_fault(one, value, place);
+      if (fault.empty()) return "";
+    }
+    return fault;
+  }
+  if (schema.contains("type")) {
+    const json& type = schema["type"];
+    const json types = type.is_array() ? type : json::array({type});
+    if (std::none_of(types.begin(), types.end(),
+                     [&](const json& name) { return has_type(value, name); })) {
+      return place + ": " + value.dump().substr(0, 40) + " is not of type " + type.dump();
+    }
+  }
+  if (value.is_array() && schema.contains("items")) {
+    for (size_t i = 0; i < value.size(); ++i) {
+      const std::string fault =
+          find_fault(schema["items"], value[i], place + "/" + std::to_string(i));
+      if (!fault.empty()) return fault;
+    }
+  }
+  if (!value.is_object() || !schema.contains("properties")) return "";
+  for (const json& name : schema.value("required", json::array())) {
+    if (!value.contains(name)) return place + ": " + name.dump() + " is missing";
+  }
+  for (const auto& [name, member] : value.items()) {
+    if (!schema["properties"].contains(name)) return place + ": \"" + name + "\" is not described";
+    const std::string fault = find_fault(schema["properties"][name], member, place + "/" + name);
+    if (!fault.empty()) return fault;
+  }
+  return "";
+}
+
+std::string fault_of(const std::string& file, const json& answer) {
+  return find_fault(schema_file(file), answer, file);
+}
+
+TEST(Schema, TheCheckFindsFaults) {
+  const json schema = {
+      {"type", "object"}, {"properties", {{"a", {{"type", "integer"}}}}}, {"required", {"a"}}};
+  EXPECT_EQ(find_fault(schema, {{"a", 1}}, ""), "");
+  EXPECT_NE(find_fault(schema, {{"a", "1"}}, ""), "");
+  EXPECT_NE(find_fault(schema, json::object(), ""), "");
+  EXPECT_NE(find_fault(schema, {{"a", 1}, {"b", 2}}, ""), "");
+}
+
+TEST(Schema, DescribesMotions) {
+  const ScratchFolder folder;
+  const json made = run_json({"generate", "a person walks forward", "--seconds", "2", "--best-of",
+                              "2", "--influence", "-o", folder.path("walk.npy")});
+  EXPECT_EQ(fault_of("motions.json", made), "");
+  EXPECT_EQ(fault_of("motion.json", json::parse(read_file(folder.path("walk.npy.json")))), "");
+  EXPECT_EQ(fault_of("motions.json", run_json({"generate", "a person bows", "--length", "likely",
+                                               "--no-retrieval", "-o", folder.path("bow.npy")})),
+            "");
+  EXPECT_EQ(fault_of("motions.json",
+                     run_json({"edit", folder.path("walk.npy"), "--prompt", "someone waves",
+                               "--span", "0.5-1", "-o", folder.path("edit.npy")})),
+            "");
+  write_file_atomically(folder.path("script.txt"), "2 a person walks\n2 someone waves\n");
+  EXPECT_EQ(fault_of("motions.json", run_json({"generate", "--script", folder.path("script.txt"),
+                                               "-o", folder.path("script.npy")})),
+            "");
+}
+
+TEST(Schema, DescribesSearches) {
+  EXPECT_EQ(fault_of("search.json", run_json({"search", "someone waves", "--moments"})), "");
+  EXPECT_EQ(
+      fault_of("search.json", run_json({"search", "someone waves", "--min-similarity", "0.999"})),
+      "");
+}
+
+}  // namespace
+}  // namespace remomask
