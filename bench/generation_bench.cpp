@@ -39,7 +39,7 @@ struct BenchModel {
       stages = nn::load_model(path);
     } else {
       label = "random weights";
-      stages = random_stages(training::model_preset(nn::parse_preset("base")));
+      stages = random_stages(training::model_preset(parse_preset("base")));
     }
   }
 };

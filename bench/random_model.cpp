@@ -20,7 +20,7 @@ nn::ModelStage random_retriever_stage(retriever::RetrieverConfig config) {
       captions.push_back(text::normalise_caption(caption));
   }
   encoders::TextEncoderConfig text =
-      encoders::text_encoder_preset(nn::parse_preset(config.preset).size);
+      encoders::text_encoder_preset(parse_preset(config.preset).size);
   text.vocabulary = text::train_wordpiece(captions, text.vocabulary_size);
   config.text_tower = encoders::TextEncoder(text).config();
   return {"retriever", nlohmann::json(config),

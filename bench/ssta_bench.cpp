@@ -40,7 +40,7 @@ void run_stack(benchmark::State& state, bool with_gradients) {
   const int64_t batch = state.range(0);
   nn::set_compute_threads(static_cast<int>(state.range(1)));
   torch::manual_seed(1);
-  const generator::MaskedConfig model = training::model_preset(nn::parse_preset("base")).masked;
+  const generator::MaskedConfig model = training::model_preset(parse_preset("base")).masked;
   const generator::SstaConfig config = stack_config(model);
   generator::SstaStack stack(config, model.layers);
   stack->initialise();

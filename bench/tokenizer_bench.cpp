@@ -22,7 +22,7 @@ const tokenizer::Tokenizer& base_tokenizer() {
   static const tokenizer::Tokenizer tokenizer = [] {
     torch::manual_seed(1);
     return tokenizer::Tokenizer(
-        random_tokenizer_stage(training::model_preset(nn::parse_preset("base")).tokenizer));
+        random_tokenizer_stage(training::model_preset(parse_preset("base")).tokenizer));
   }();
   return tokenizer;
 }

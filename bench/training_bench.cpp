@@ -85,11 +85,11 @@ class StepMeter {
 };
 
 void train_evaluator_steps(int64_t steps, const Monitor& monitor) {
-  training::EvaluatorTrainingOptions options(nn::Size::base);
+  training::EvaluatorTrainingOptions options(ModelSize::base);
   options.movement.steps = 1;
   options.trainer.steps = steps;
   training::train_evaluator(training_clips().train, {},
-                            evaluation::evaluator_preset(nn::Size::base), options, monitor);
+                            evaluation::evaluator_preset(ModelSize::base), options, monitor);
 }
 
 /// Trains a stage, and before it for one step those that it builds on and that are not there.
@@ -97,7 +97,7 @@ void train_stage_steps(const std::string& stage, int64_t steps, const Monitor& m
   static const StageFolder folder;
   static training::GeneratorDataCache prepared;
   const training::StageFile file = [](const std::string& each) { return folder.file(each); };
-  training::TrainingRecipe recipe = training::training_recipe(nn::parse_preset("base"));
+  training::TrainingRecipe recipe = training::training_recipe(parse_preset("base"));
   for (const std::string& earlier : training::recipe_stages(recipe)) {
     if (earlier == stage) break;
     if (fs::exists(file(earlier))) continue;

@@ -7,27 +7,27 @@
 
 namespace remomask::encoders {
 
-TextEncoderConfig text_encoder_preset(nn::Size size) {
+TextEncoderConfig text_encoder_preset(ModelSize size) {
   TextEncoderConfig config;
   switch (size) {
-    case nn::Size::tiny:
+    case ModelSize::tiny:
       config.width = 64;
       config.layers = 2;
       config.heads = 2;
       config.hidden = 128;
       config.vocabulary_size = 600;
       break;
-    case nn::Size::small:
+    case ModelSize::small:
       config.width = 128;
       config.layers = 2;
       config.heads = 4;
       config.hidden = 256;
       config.vocabulary_size = 1000;
       break;
-    case nn::Size::base:
-    case nn::Size::momask:
+    case ModelSize::base:
+    case ModelSize::momask:
       break;
-    case nn::Size::paper:
+    case ModelSize::paper:
       config.width = 768;
       config.layers = 6;
       config.heads = 12;

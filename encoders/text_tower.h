@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "nn/layers.h"
-#include "nn/preset.h"
+#include "base/preset.h"
 #include "text/wordpiece.h"
 
 namespace remomask::encoders {
@@ -52,7 +52,7 @@ struct TextEncoderConfig {
 };
 
 /// Sizes without a vocabulary. MoMask's published sizes go with the base tower.
-TextEncoderConfig text_encoder_preset(nn::Size size);
+TextEncoderConfig text_encoder_preset(ModelSize size);
 
 void to_json(nlohmann::json& json, const TextEncoderConfig& config);
 void from_json(const nlohmann::json& json, TextEncoderConfig& config);

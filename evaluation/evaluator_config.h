@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "motion/features.h"
-#include "nn/preset.h"
+#include "base/preset.h"
 
 namespace remomask::evaluation {
 
@@ -30,7 +30,7 @@ struct EvaluatorConfig {
 
 /// "tiny" (tests), "base" (default) or "paper" (sizes of the publication).
 /// Throws Error for another name.
-EvaluatorConfig evaluator_preset(nn::Size size);
+EvaluatorConfig evaluator_preset(ModelSize size);
 
 void to_json(nlohmann::json& json, const EvaluatorConfig& config);
 void from_json(const nlohmann::json& json, EvaluatorConfig& config);

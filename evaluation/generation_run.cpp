@@ -11,7 +11,7 @@
 #include "db/training_set.h"
 #include "evaluation/side_rule.h"
 #include "remomask/error.h"
-#include "search/filter.h"
+#include "db/clip_filter.h"
 
 namespace remomask::evaluation {
 
@@ -131,7 +131,7 @@ JudgeGallery::JudgeGallery(const db::Database& database, const MotionJudge& judg
   ClipFilter filter;
   filter.splits = splits;
   const auto& known = judge.clip_ids();
-  for (const int64_t id : search::matching_clips(clips, filter)) {
+  for (const int64_t id : db::matching_clips(clips, filter)) {
     const db::Clip& clip = *by_id.at(id);
     const std::string content = db::clip_content(clip);
     // A clip of unknown content could only be wrong.

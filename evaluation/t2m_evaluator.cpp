@@ -21,7 +21,7 @@ bool is_t2m_evaluator(const nn::TensorFile& file) {
 }
 
 nn::ModelStage import_t2m_evaluator(const nn::TensorFile& file, const std::string& path) {
-  EvaluatorConfig config = evaluator_preset(nn::Size::paper);
+  EvaluatorConfig config = evaluator_preset(ModelSize::paper);
   config.mode = motion::FeatureMode::official;
   const auto words = file.metadata.find("vocabulary");
   if (words == file.metadata.end()) {

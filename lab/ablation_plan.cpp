@@ -38,7 +38,7 @@ void check_list(const std::vector<T>& list, const std::string& what) {
 
 training::TrainingRecipe ablation_recipe(const AblationOptions& options, const std::string& variant,
                                          uint64_t seed) {
-  training::TrainingRecipe recipe = training::training_recipe(nn::parse_preset(options.preset));
+  training::TrainingRecipe recipe = training::training_recipe(parse_preset(options.preset));
   apply_variant(recipe, variant);
   for (const std::string& stage : training::recipe_stages(recipe)) {
     training::TrainerOptions& trainer = training::stage_trainer(recipe, stage);
@@ -135,7 +135,7 @@ AblationPlan plan_ablation(const AblationOptions& options, const AblationData& d
   check_list(options.seeds, "seed");
   if (options.prompts < 1) throw Error("the ablation needs at least one prompt");
   const training::TrainingRecipe known =
-      training::training_recipe(nn::parse_preset(options.preset));
+      training::training_recipe(parse_preset(options.preset));
   for (const auto* choices : {&options.steps, &options.batch}) {
     for (const auto& [stage, value] : *choices) {
       training::stage_trainer(known, stage);  // refuses unknown stages

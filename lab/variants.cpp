@@ -23,7 +23,7 @@ void make_momask(training::TrainingRecipe& recipe) {
   training::use_one_row(recipe.model);
   training::ModelConfig& model = recipe.model;
   const std::string preset =
-      nn::preset_name({nn::parse_preset(recipe.preset).size, /*one_row=*/true});
+      preset_name({parse_preset(recipe.preset).size, /*one_row=*/true});
   model.tokenizer.preset = model.masked.preset = model.residual.preset = preset;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/hash.h"
+#include "base/process_settings.h"
 #include "db/database.h"
 #include "nn/model_file.h"
 #include "nn/threads.h"
@@ -149,7 +150,9 @@ struct TextToMotion::Impl {
 
 TextToMotion::TextToMotion(const std::string& model, const std::string& database,
                            const OpenOptions& options)
-    : impl_(std::make_unique<Impl>(model, database, options)) {}
+    : impl_(std::make_unique<Impl>(model, database, options)) {
+  log_missing_settings();
+}
 TextToMotion::~TextToMotion() = default;
 TextToMotion::TextToMotion(TextToMotion&&) noexcept = default;
 TextToMotion& TextToMotion::operator=(TextToMotion&&) noexcept = default;

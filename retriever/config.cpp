@@ -25,10 +25,10 @@ const char* queues_name(Queues queues) {
   return "both";
 }
 
-RetrieverConfig retriever_preset(nn::Size size) {
+RetrieverConfig retriever_preset(ModelSize size) {
   RetrieverConfig config;
   switch (size) {
-    case nn::Size::tiny:
+    case ModelSize::tiny:
       config.width = 32;
       config.layers = 1;
       config.heads = 2;
@@ -36,17 +36,17 @@ RetrieverConfig retriever_preset(nn::Size size) {
       config.embedding = 64;
       config.part_embedding = 16;
       break;
-    case nn::Size::small:
+    case ModelSize::small:
       config.width = 64;
       config.layers = 2;
       config.hidden = 128;
       config.embedding = 128;
       config.part_embedding = 32;
       break;
-    case nn::Size::base:
-    case nn::Size::momask:
+    case ModelSize::base:
+    case ModelSize::momask:
       return config;
-    case nn::Size::paper:
+    case ModelSize::paper:
       config.patch = 1;
       config.width = 512;
       config.layers = 4;
@@ -55,7 +55,7 @@ RetrieverConfig retriever_preset(nn::Size size) {
       config.embedding = 512;
       break;
   }
-  config.preset = nn::size_name(size);
+  config.preset = size_name(size);
   return config;
 }
 

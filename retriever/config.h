@@ -5,7 +5,7 @@
 #include <string>
 
 #include "motion/features.h"
-#include "nn/preset.h"
+#include "base/preset.h"
 
 namespace remomask::retriever {
 
@@ -30,7 +30,7 @@ struct RetrieverConfig {
 };
 
 /// The sizes of a retriever. MoMask's published sizes go with the base retriever.
-RetrieverConfig retriever_preset(nn::Size size);
+RetrieverConfig retriever_preset(ModelSize size);
 
 /// One encoder over the whole body in place of six over its parts, as wide as
 /// makes about as many weights. The six part vectors are then six heads of the

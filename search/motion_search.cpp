@@ -16,7 +16,7 @@
 #include "remomask/error.h"
 #include "retriever/retriever.h"
 #include "search/calibration.h"
-#include "search/filter.h"
+#include "db/clip_filter.h"
 #include "search/hit_list.h"
 #include "search/moments.h"
 #include "search/search_scene.h"
@@ -92,7 +92,7 @@ struct MotionSearch::Impl {
     }
     // Ranks need all clips in their exact order: no approximate index for boosts.
     if (filter.empty() && query.boost_words.empty()) return std::nullopt;
-    return matching_clips(database, state->clips, filter);
+    return db::matching_clips(database, state->clips, filter);
   }
 
   /// The clips with any of the words, best first.
@@ -278,7 +278,7 @@ std::vector<FoundClip> MotionSearch::nearest(const std::vector<float>& query, in
   impl_->refresh();
   SearchScene scene;
   scene.state = impl_->state;
-  if (!filter.empty()) scene.allowed = matching_clips(impl_->database, scene.state->clips, filter);
+  if (!filter.empty()) scene.allowed = db::matching_clips(impl_->database, scene.state->clips, filter);
   SearchQuery hits;
   hits.k = k;
   std::vector<FoundClip> result;

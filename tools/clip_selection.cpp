@@ -16,7 +16,7 @@ void ClipSelection::add(CLI::App& command) {
 bool ClipSelection::empty() const { return clips.empty() && filter.filter().empty(); }
 
 std::vector<int64_t> ClipSelection::ids(const db::Database& database) const {
-  std::vector<int64_t> passing = search::matching_clips(database, filter.filter());
+  std::vector<int64_t> passing = db::matching_clips(database, filter.filter());
   if (clips.empty()) return passing;
   std::vector<int64_t> named, both;
   for (const std::string& clip : clips) named.push_back(find_clip(database, clip));
@@ -47,7 +47,7 @@ int64_t find_clip(const db::Database& database, const std::string& name_or_id) {
 nlohmann::json parse_labels(const std::vector<std::string>& pairs) {
   nlohmann::json labels = nlohmann::json::object();
   for (const std::string& pair : pairs) {
-    const LabelCondition label = search::parse_label_condition(pair);
+    const LabelCondition label = db::parse_label_condition(pair);
     const auto value = nlohmann::json::parse(label.value, nullptr, false);
     labels[label.key] = value.is_discarded() ? nlohmann::json(label.value) : value;
   }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "search/filter.h"
+#include "db/clip_filter.h"
 #include "tools/workspace.h"
 
 namespace remomask::tools {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "search/filter.h"
+#include "db/clip_filter.h"
 
 namespace remomask::tools {
 

@@ -34,7 +34,7 @@ void register_list(CLI::App& group, Program& program) {
   command->callback([options, &program] {
     const db::Database database(options->database, db::OpenMode::read_only);
     const db::ReadSnapshot snapshot(database);
-    const auto ids = search::matching_clips(database, options->filter.filter());
+    const auto ids = db::matching_clips(database, options->filter.filter());
     size_t shown = ids.size();
     if (options->limit > 0) shown = std::min(shown, static_cast<size_t>(options->limit));
     nlohmann::json clips = nlohmann::json::array();

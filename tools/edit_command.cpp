@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tools/core.h"
+
 #include "tools/output_path.h"
 
 namespace remomask::tools {
@@ -45,7 +47,7 @@ void register_edit(CLI::App& app, Program& program) {
   options->generation.add(*command);
   command->callback([options, &program] {
     require_writable_output(options->output);
-    run_edit(*options, program);
+    core(program).edit(*options, program);
   });
 }
 

@@ -1,69 +1,162 @@
 #include "tools/evaluate_command.h"
 
-#include "db/database.h"
-#include "evaluation/retrieval_metrics.h"
-#include "remomask/error.h"
-#include "remomask/library.h"
+#include <CLI/CLI.hpp>
+
+#include "tools/core.h"
 
 namespace remomask::tools {
 
-void EvaluationInput::add(CLI::App& command) {
-  files.add_model(command);
-  add_clips(command);
+namespace {
+
+void add_resamples(CLI::App& command, std::optional<int>& resamples) {
+  command.add_option("--resamples", resamples, "of the intervals; 0: no intervals")
+      ->check(CLI::Range(0, 1000000));
 }
 
-void EvaluationInput::add_clips(CLI::App& command) {
-  files.add_database(command);
-  command.add_option("--split", split, "clips to measure")->capture_default_str();
-  command.add_option("--source", sources, "only these data sets (repeatable)");
+void register_retrieval(CLI::App& parent, Program& program) {
+  auto options = std::make_shared<EvaluateRetrievalCommand>();
+  CLI::App* command =
+      add_command(parent, "retrieval", "recall and median rank of search by text and by motion",
+                  "remomask evaluate retrieval --db motions.sqlite --protocol duplicates");
+  options->input.add(*command);
+  command
+      ->add_option("--protocol", options->protocols,
+                   "all, threshold, dissimilar, small-batch or duplicates (repeatable, or a list "
+                   "with commas; default: each)")
+      ->delimiter(',');
+  command
+      ->add_option("--threshold", options->threshold,
+                   "captions as alike as this are the same in the protocol threshold")
+      ->check(CLI::Range(0.5, 1.0));
+  add_resamples(*command, options->resamples);
+  command->add_flag("--all-captions", options->all_captions, "every caption, not the first alone");
+  command->callback([options, &program] { core(program).evaluate_retrieval(*options, program); });
 }
 
-std::vector<db::TrainingClip> EvaluationInput::load(const std::string& wanted_split,
-                                                    motion::FeatureMode mode) const {
-  const std::string path = files.database_path();
-  const db::Database database(path, db::OpenMode::read_only);
-  db::TrainingSetOptions options;
-  options.splits = {wanted_split};
-  options.add_mirrored = false;
-  options.sources = sources;
-  options.mode = mode;
-  auto clips = db::load_training_set(database, options);
-  if (clips.empty()) {
-    throw FileError(
-        path, 0,
-        "has no clips of split \"" + wanted_split + "\"; choose another --split or import clips");
-  }
-  return clips;
+void register_calibration(CLI::App& parent, Program& program) {
+  auto options = std::make_shared<EvaluateCalibrationCommand>();
+  CLI::App* command =
+      add_command(parent, "calibration", "what share of the hits at a similarity is right",
+                  "remomask evaluate calibration --db motions.sqlite --store");
+  options->input.add(*command);
+  command->add_option("--check", options->check, "split that the calibration is checked on")
+      ->capture_default_str();
+  command->add_flag("--store", options->store, "keep the calibration in the database");
+  command->add_option("--plot", options->plot, "reliability diagram (.png)");
+  command->callback([options, &program] { core(program).evaluate_calibration(*options, program); });
 }
 
-nlohmann::json EvaluationInput::stamped(nlohmann::json document,
-                                        const std::vector<db::TrainingClip>& clips) const {
-  document["model"] = files.model_path();
-  document["split"] = split;
-  document["split_hash"] = evaluation::clip_set_hash(clips);
-  return document;
+void register_moments(CLI::App& parent, Program& program) {
+  auto options = std::make_shared<EvaluateMomentsCommand>();
+  CLI::App* command = add_command(parent, "moments",
+                                  "does search find where in a long motion its sentence happens?",
+                                  "remomask evaluate moments --db motions.sqlite --tasks 300");
+  options->input.add(*command);
+  command->add_option("--tasks", options->tasks, "long motions, each of three clips joined");
+  command->add_option("--seed", options->seed, "choice of the clips");
+  command->add_option("--windows", options->windows, "lengths of the windows, frames at 20 fps")
+      ->delimiter(',');
+  command->add_option("--stride", options->stride, "frames between windows");
+  command->add_option("--margin", options->margin,
+                      "minimum by which the similarity of frames outside a moment falls short");
+  command
+      ->add_option("--share", options->share,
+                   "of the way from the worst frame to the best, where a moment ends")
+      ->check(CLI::Range(0.0, 1.0));
+  add_resamples(*command, options->resamples);
+  command->callback([options, &program] { core(program).evaluate_moments(*options, program); });
 }
 
-void EvaluatorOption::add(CLI::App& command) {
-  command.add_option("--evaluator", path,
-                     "text-motion evaluator (.safetensors); default: the shipped one");
+void register_queries(CLI::App& parent, Program& program) {
+  auto options = std::make_shared<EvaluateQueriesCommand>();
+  CLI::App* command = add_command(parent, "queries",
+                                  "how search copes with other wordings, and what part vectors add",
+                                  "remomask evaluate queries --db motions.sqlite --split val");
+  options->input.add(*command);
+  add_resamples(*command, options->resamples);
+  command->callback([options, &program] { core(program).evaluate_queries(*options, program); });
 }
 
-std::string EvaluatorOption::evaluator_path() const {
-  return path.empty() ? shipped_file("evaluator.safetensors") : path;
+void register_evaluator(CLI::App& parent, Program& program) {
+  auto options = std::make_shared<EvaluateEvaluatorCommand>();
+  CLI::App* command = add_command(parent, "evaluator",
+                                  "how far the text-motion evaluator can be trusted, on real clips",
+                                  "remomask evaluate evaluator --db motions.sqlite");
+  options->input.add_clips(*command);
+  options->evaluator.add(*command);
+  command->add_option("--draws", options->draws, "draws of captions and batches")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--batch", options->batch, "pairs among which the right one is found")
+      ->check(CLI::Range(2, 1000));
+  command->callback([options, &program] { core(program).evaluate_evaluator(*options, program); });
 }
+
+void register_tokenizer(CLI::App& parent, Program& program) {
+  auto options = std::make_shared<EvaluateTokenizerCommand>();
+  CLI::App* command =
+      add_command(parent, "tokenizer", "reconstruction error of the tokenizer, use of its codes",
+                  "remomask evaluate tokenizer --db motions.sqlite");
+  options->input.add(*command);
+  command->add_option("--evaluator", options->evaluator.path,
+                      "also measure the reconstruction FID with this evaluator");
+  command->callback([options, &program] { core(program).evaluate_tokenizer(*options, program); });
+}
+
+void register_generation(CLI::App& parent, Program& program) {
+  auto options = std::make_shared<EvaluateGenerationCommand>();
+  CLI::App* command = add_command(
+      parent, "generation",
+      "generated motions beside real ones: FID, R-precision, content, sides, physics",
+      "remomask evaluate generation --db motions.sqlite --prompts 200 --results outcomes.jsonl");
+  options->files.add_model(*command);
+  options->files.add_database(*command);
+  options->evaluator.add(*command);
+  options->generation.add(*command);
+  command
+      ->add_option("--prompts", options->prompts,
+                   "number of prompts; 0: every clip of the split once")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--split", options->prompt_split, "captions of these clips")
+      ->capture_default_str();
+  command
+      ->add_option("--draw", options->draw,
+                   "even: prompts spread over the contents; uniform: every clip equally likely")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"even", "uniform"}));
+  command->add_option("--prompt-seed", options->prompt_seed, "choice of the prompts")
+      ->capture_default_str();
+  command->add_option("--repeats", options->repeats, "generations of every prompt (papers: 20)")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--modality-prompts", options->modality_prompts,
+                   "prompts with 30 more generations, for MultiModality (papers: 96)")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--judge", options->judge, "space in which the nearest real motion is found")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"evaluator", "retriever"}));
+  command
+      ->add_option("--results", options->results,
+                   "JSON Lines, one motion a line; an existing file is continued")
+      ->required();
+  command->callback([options, &program] { core(program).evaluate_generation(*options, program); });
+}
+
+}  // namespace
 
 void register_evaluate(CLI::App& app, Program& program) {
   CLI::App* command = add_command(app, "evaluate", "measure a model on a split of a database",
                                   "remomask evaluate retrieval --db motions.sqlite");
   command->require_subcommand(1);
-  register_evaluate_retrieval(*command, program);
-  register_evaluate_calibration(*command, program);
-  register_evaluate_moments(*command, program);
-  register_evaluate_queries(*command, program);
-  register_evaluate_evaluator(*command, program);
-  register_evaluate_tokenizer(*command, program);
-  register_evaluate_generation(*command, program);
+  register_retrieval(*command, program);
+  register_calibration(*command, program);
+  register_moments(*command, program);
+  register_queries(*command, program);
+  register_evaluator(*command, program);
+  register_tokenizer(*command, program);
+  register_generation(*command, program);
 }
 
 }  // namespace remomask::tools

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "db/training_set.h"
-#include "evaluation/evaluator.h"
+#include "tools/generation_options.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
@@ -20,13 +19,6 @@ struct EvaluationInput {
   void add(CLI::App& command);
   /// Without --model, for what needs no model.
   void add_clips(CLI::App& command);
-  /// Clips of `wanted_split` of the sources, without mirror twins that are not
-  /// stored. Throws FileError when there are none.
-  std::vector<db::TrainingClip> load(const std::string& wanted_split,
-                                     motion::FeatureMode mode) const;
-  std::vector<db::TrainingClip> load(motion::FeatureMode mode) const { return load(split, mode); }
-  /// The document of --json with what was measured: model, split, hash of its clips.
-  nlohmann::json stamped(nlohmann::json document, const std::vector<db::TrainingClip>& clips) const;
 };
 
 /// --evaluator: the text-motion evaluator, by default the shipped one.
@@ -35,16 +27,67 @@ struct EvaluatorOption {
 
   void add(CLI::App& command);
   std::string evaluator_path() const;
-  evaluation::Evaluator load() const { return evaluation::load_evaluator(evaluator_path()); }
 };
 
-/// The sub-commands of `remomask evaluate`.
-void register_evaluate_retrieval(CLI::App& parent, Program& program);
-void register_evaluate_calibration(CLI::App& parent, Program& program);
-void register_evaluate_moments(CLI::App& parent, Program& program);
-void register_evaluate_queries(CLI::App& parent, Program& program);
-void register_evaluate_evaluator(CLI::App& parent, Program& program);
-void register_evaluate_tokenizer(CLI::App& parent, Program& program);
-void register_evaluate_generation(CLI::App& parent, Program& program);
+// What the sub-commands of `remomask evaluate` are asked for. What is not set keeps the default of
+// the measurement.
+
+struct EvaluateRetrievalCommand {
+  EvaluationInput input;
+  std::vector<std::string> protocols;
+  std::optional<double> threshold;
+  std::optional<int> resamples;
+  bool all_captions = false;
+};
+
+struct EvaluateCalibrationCommand {
+  EvaluateCalibrationCommand() { input.split = "val"; }
+
+  EvaluationInput input;
+  std::string check = "test", plot;
+  bool store = false;
+};
+
+struct EvaluateMomentsCommand {
+  EvaluationInput input;
+  std::optional<int> tasks, stride, resamples;
+  std::optional<uint64_t> seed;
+  std::vector<int> windows;
+  std::optional<double> margin, share;
+};
+
+struct EvaluateQueriesCommand {
+  EvaluationInput input;
+  std::optional<int> resamples;
+};
+
+struct EvaluateEvaluatorCommand {
+  EvaluationInput input;
+  EvaluatorOption evaluator;
+  std::optional<int> draws, batch;
+};
+
+struct EvaluateTokenizerCommand {
+  EvaluationInput input;
+  EvaluatorOption evaluator;
+};
+
+struct EvaluateGenerationCommand {
+  FileOptions files;
+  EvaluatorOption evaluator;
+  GenerationOptions generation;
+  int prompts = 200;
+  std::string prompt_split = "test", draw = "even", judge = "evaluator", results;
+  uint64_t prompt_seed = 1;
+  int repeats = 1, modality_prompts = 10;
+};
+
+void run_evaluate_retrieval(const EvaluateRetrievalCommand& command, Program& program);
+void run_evaluate_calibration(const EvaluateCalibrationCommand& command, Program& program);
+void run_evaluate_moments(const EvaluateMomentsCommand& command, Program& program);
+void run_evaluate_queries(const EvaluateQueriesCommand& command, Program& program);
+void run_evaluate_evaluator(const EvaluateEvaluatorCommand& command, Program& program);
+void run_evaluate_tokenizer(const EvaluateTokenizerCommand& command, Program& program);
+void run_evaluate_generation(const EvaluateGenerationCommand& command, Program& program);
 
 }  // namespace remomask::tools

@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tools/core.h"
+
 #include "remomask/error.h"
 #include "text/caption.h"
 #include "tools/output_path.h"
@@ -68,7 +70,7 @@ void register_generate(CLI::App& app, Program& program) {
       program.warn(fmt::format("only the first {} characters of the prompt can be read",
                                text::kMostCaptionBytes));
     }
-    run_generate(*options, program);
+    core(program).generate(*options, program);
   });
 }
 

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
-#include "nn/model_file.h"
+#include "tools/core.h"
 #include "tools/database_info.h"
 #include "tools/program.h"
 
@@ -14,20 +14,6 @@ bool is_model_path(const std::string& path) {
          path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-nlohmann::json describe_model(const std::string& path) {
-  nlohmann::json stages = nlohmann::json::object();
-  for (const auto& [kind, stage] : nn::load_model(path)) {
-    int64_t values = 0;
-    for (const auto& [name, tensor] : stage.tensors) values += tensor.numel();
-    nlohmann::json config = stage.config;
-    if (config.contains("vocabulary")) {
-      config["vocabulary"] = fmt::format("{} pieces", config["vocabulary"].size());
-    }
-    stages[kind] = {{"values", values}, {"hash", nn::stage_hash(stage)}, {"config", config}};
-  }
-  return {{"file", path}, {"stages", stages}};
-}
-
 }  // namespace
 
 void register_info(CLI::App& app, Program& program) {
@@ -36,7 +22,8 @@ void register_info(CLI::App& app, Program& program) {
                                   "remomask info models/base.safetensors");
   command->add_option("file", *path, "database (.sqlite) or model (.safetensors)")->required();
   command->callback([path, &program] {
-    const auto document = is_model_path(*path) ? describe_model(*path) : describe_database(*path);
+    if (is_model_path(*path)) return core(program).model_info(*path, program);
+    const auto document = describe_database(*path);
     if (program.json) return program.print_json(document);
     print_description(document);
   });

@@ -1,12 +1,15 @@
+#include <faiss/Index.h>
 #include <fmt/format.h>
+#include <sqlite3.h>
+#include <torch/version.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <new>
 
-#include "nn/threads.h"
 #include "remomask/error.h"
+#include "remomask/version.h"
 #include "tools/program.h"
 
 namespace remomask::tools {
@@ -14,14 +17,24 @@ namespace {
 
 constexpr int kExitFailed = 1;
 constexpr int kExitUsage = 2;
+constexpr int kExitInterrupted = 130;  // as a shell reports SIGINT
+
+/// The version and what this program was built with; nothing is loaded for it.
+std::string version_text() {
+  return fmt::format(
+      "remomask {}\ncompiler {}, C++ {}\nlibtorch {}.{}.{}, FAISS {}.{}.{}, SQLite {}",
+      REMOMASK_VERSION, __VERSION__, __cplusplus, TORCH_VERSION_MAJOR, TORCH_VERSION_MINOR,
+      TORCH_VERSION_PATCH, FAISS_VERSION_MAJOR, FAISS_VERSION_MINOR, FAISS_VERSION_PATCH,
+      SQLITE_VERSION);
+}
 
 int run(int argc, char** argv) {
-  Program program;
+  TerminalProgram program;
   CLI::App app{
       "remomask: text to human motion. Searches a database of motions by meaning and uses what\n"
       "it finds to generate a new one."};
   app.name("remomask");
-  app.set_version_flag("--version", REMOMASK_VERSION);
+  app.set_version_flag("--version", version_text());
   app.add_flag("--json", program.json, "print one JSON document on standard output");
   app.add_flag("--quiet", program.quiet, "no progress");
   app.add_option("--threads", program.threads, "CPU threads; 0: all available")
@@ -36,7 +49,6 @@ int run(int argc, char** argv) {
       register_info,     register_db,       register_ablate,
   };
   for (const RegisterCommand add : commands) add(app, program);
-  app.parse_complete_callback([&] { nn::set_compute_threads(program.threads); });
   try {
     app.parse(argc, argv);
     program.finish_progress();
@@ -46,7 +58,7 @@ int run(int argc, char** argv) {
   } catch (const Interrupted& error) {
     program.finish_progress();
     fmt::print(stderr, "remomask: {}\n", error.what());
-    return kExitFailed;
+    return kExitInterrupted;
   } catch (const std::bad_alloc&) {
     program.finish_progress();
     fmt::print(stderr, "remomask: out of memory; use smaller batches or fewer clips\n");

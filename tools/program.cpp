@@ -101,7 +101,7 @@ ProgressPrinter& progress_printer() {
 
 }  // namespace
 
-Monitor Program::monitor() {
+Monitor TerminalProgram::monitor() {
   struct sigaction action {};
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
@@ -119,16 +119,16 @@ Monitor Program::monitor() {
   return result;
 }
 
-void Program::finish_progress() { progress_printer().end_line(); }
+void TerminalProgram::finish_progress() { progress_printer().end_line(); }
 
-void Program::print_json(const nlohmann::json& document) {
+void TerminalProgram::print_json(const nlohmann::json& document) {
   if (json) {
     // Text from files may hold bytes that are not UTF-8: shown, not fatal.
     fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   }
 }
 
-void Program::warn(const std::string& message) {
+void TerminalProgram::warn(const std::string& message) {
   finish_progress();
   fmt::print(stderr, "warning: {}\n", message);
 }

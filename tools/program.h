@@ -10,25 +10,37 @@
 
 namespace remomask::tools {
 
-/// What every sub-command shares: global options, output, stopping.
+/// What every sub-command shares: global options, output, stopping. An interface, since the
+/// commands that need the networks run in a shared object of their own (core.h).
 class Program {
  public:
+  virtual ~Program() = default;
+
   bool json = false;   ///< --json: one JSON document on standard output
   bool quiet = false;  ///< --quiet: no progress
   int threads = 0;     ///< --threads: 0 for all available CPUs
 
   /// Progress on standard error (a bar with an ETA on a terminal, plain lines
   /// otherwise) and a stop token that Ctrl-C requests.
-  Monitor monitor();
+  virtual Monitor monitor() = 0;
 
   /// Ends an open progress line.
-  void finish_progress();
+  virtual void finish_progress() = 0;
 
-  /// Prints the document with --json, otherwise calls nothing.
-  void print_json(const nlohmann::json& document);
+  /// Prints the document with --json, otherwise does nothing.
+  virtual void print_json(const nlohmann::json& document) = 0;
 
   /// A note for people on standard error.
-  void warn(const std::string& message);
+  virtual void warn(const std::string& message) = 0;
+};
+
+/// The program on a terminal.
+class TerminalProgram final : public Program {
+ public:
+  Monitor monitor() override;
+  void finish_progress() override;
+  void print_json(const nlohmann::json& document) override;
+  void warn(const std::string& message) override;
 };
 
 /// Registers a sub-command: name, help with an example, options, what to run.

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tools/core.h"
+
 namespace remomask::tools {
 
 namespace {
@@ -60,7 +62,7 @@ void register_search(CLI::App& app, Program& program) {
   options->files.add_model(*command);
   options->filter.add(*command);
   add_result_options(*command, *options);
-  command->callback([options, &program] { run_search(*options, program); });
+  command->callback([options, &program] { core(program).search(*options, program); });
 }
 
 }  // namespace remomask::tools

@@ -1,76 +1,61 @@
-// Runs before the constructors of any shared library, so that OpenBLAS, libgomp
-// and libtorch see these settings: setenv() would be lost (libc resets environ)
-// and an initialiser inside a library comes too late, hence one execve.
-//  - Debian's OpenBLAS 0.3.21 does not know recent Intel processors and falls
-//    back to SSE3 kernels, five times slower. AMD's are recognised.
-//  - OpenMP threads that spin while they wait fight with OpenBLAS's own pool.
-// Every setting that the user made stays as it is.
-#include <sched.h>
+// Linked into tests and benchmarks, which link libtorch directly. Runs before the constructors of
+// any shared library, so that OpenBLAS, libgomp and libtorch see the recommended settings: setenv()
+// would be lost (libc resets environ) and an initialiser inside a library comes too late, hence one
+// execve. Every setting that the user made stays as it is.
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstring>
 
-extern "C" {
+#include "base/process_settings.h"
 
-static const char* find_setting(char** environment, const char* name) {
+namespace {
+
+constexpr int kMaxVariables = 4096;
+
+struct Environment {
+  char* variables[kMaxVariables];
+  char added[8][64];
+  int count = 0, additions = 0;
+};
+
+bool holds(const Environment& environment, const char* name) {
   const size_t length = strlen(name);
-  for (; *environment; ++environment) {
-    if (strncmp(*environment, name, length) == 0 && (*environment)[length] == '=') {
-      return *environment + length + 1;
-    }
+  for (int i = 0; i < environment.count; ++i) {
+    const char* variable = environment.variables[i];
+    if (strncmp(variable, name, length) == 0 && variable[length] == '=') return true;
   }
-  return nullptr;
+  return false;
 }
 
-static void choose_settings(int, char** arguments, char** environment) {
-  if (find_setting(environment, "REMOMASK_STARTED")) return;
-  constexpr int kMost = 4096;
-  static char* changed[kMost];
-  static char omp_threads[64], blas_threads[64];
-  int count = 0;
-  while (environment[count] && count < kMost - 8) {
-    changed[count] = environment[count];
-    ++count;
-  }
-  if (environment[count]) return;
-  const int before = count;
-  const auto add = [&](const char* setting) { changed[count++] = const_cast<char*>(setting); };
+void add_setting(const char* name, const char* value, void* data) {
+  auto& environment = *static_cast<Environment*>(data);
+  if (environment.additions == 8 || environment.count + 2 >= kMaxVariables) return;
+  if (holds(environment, name)) return;
+  char* text = environment.added[environment.additions++];
+  snprintf(text, sizeof environment.added[0], "%s=%s", name, value);
+  environment.variables[environment.count++] = text;
+}
 
-  __builtin_cpu_init();
-  if (!find_setting(environment, "OPENBLAS_CORETYPE") && __builtin_cpu_is("intel")) {
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) {
-      add(__builtin_cpu_supports("avx512bf16") ? "OPENBLAS_CORETYPE=Cooperlake"
-                                               : "OPENBLAS_CORETYPE=SkylakeX");
-    } else if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-      add("OPENBLAS_CORETYPE=Haswell");
-    }
+void choose_settings(int, char** arguments, char** variables) {
+  static Environment environment;
+  for (; variables[environment.count]; ++environment.count) {
+    if (environment.count + 16 >= kMaxVariables) return;
+    environment.variables[environment.count] = variables[environment.count];
   }
-  if (!find_setting(environment, "OMP_WAIT_POLICY")) add("OMP_WAIT_POLICY=passive");
+  if (holds(environment, "REMOMASK_STARTED")) return;
+  remomask::visit_recommended_settings(add_setting, &environment);
   // Activations of several MB would be mapped and faulted in on every call.
-  if (!find_setting(environment, "MALLOC_MMAP_MAX_")) add("MALLOC_MMAP_MAX_=0");
-  if (!find_setting(environment, "MALLOC_TRIM_THRESHOLD_")) {
-    add("MALLOC_TRIM_THRESHOLD_=2147483647");
-  }
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  const int cpus = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
-  if (cpus > 0 && !find_setting(environment, "OMP_NUM_THREADS")) {
-    snprintf(omp_threads, sizeof omp_threads, "OMP_NUM_THREADS=%d", cpus);
-    add(omp_threads);
-  }
-  if (cpus > 0 && !find_setting(environment, "OPENBLAS_NUM_THREADS")) {
-    snprintf(blas_threads, sizeof blas_threads, "OPENBLAS_NUM_THREADS=%d", cpus);
-    add(blas_threads);
-  }
-  if (count == before) return;
-  add("REMOMASK_STARTED=1");
-  changed[count] = nullptr;
-  // Comes back only on failure: then the program runs on, slower.
-  execve("/proc/self/exe", arguments, changed);
+  add_setting("MALLOC_MMAP_MAX_", "0", &environment);
+  add_setting("MALLOC_TRIM_THRESHOLD_", "2147483647", &environment);
+  if (environment.additions == 0) return;
+  add_setting("REMOMASK_STARTED", "1", &environment);
+  environment.variables[environment.count] = nullptr;
+  // Returns only on failure: then the process continues, slower.
+  execve("/proc/self/exe", arguments, environment.variables);
 }
 
-__attribute__((section(".preinit_array"), used)) static void (*run_first)(int, char**,
-                                                                          char**) = choose_settings;
-}
+__attribute__((section(".preinit_array"), used)) void (*run_first)(int, char**,
+                                                                   char**) = choose_settings;
+
+}  // namespace

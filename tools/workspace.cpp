@@ -1,10 +1,9 @@
 #include "tools/workspace.h"
 
 #include "db/captions_index.h"
-#include "index/vector_index.h"
+#include "db/clip_filter.h"
 #include "remomask/error.h"
 #include "remomask/library.h"
-#include "search/filter.h"
 
 namespace remomask::tools {
 
@@ -23,10 +22,6 @@ std::string FileOptions::model_path() const {
 
 std::string FileOptions::database_path() const {
   return database.empty() ? shipped_file("procedural.sqlite") : database;
-}
-
-std::string FileOptions::index_path() const {
-  return index.empty() ? index::default_index_path(database_path()) : index;
 }
 
 void FilterOptions::add(CLI::App& command) {
@@ -50,8 +45,7 @@ void FilterOptions::add(CLI::App& command) {
 ClipFilter FilterOptions::filter() const {
   ClipFilter result;
   result.splits = splits;
-  for (const std::string& label : labels)
-    result.labels.push_back(search::parse_label_condition(label));
+  for (const std::string& label : labels) result.labels.push_back(db::parse_label_condition(label));
   result.min_seconds = min_seconds;
   result.max_seconds = max_seconds;
   result.tags = tags;
@@ -63,17 +57,6 @@ ClipFilter FilterOptions::filter() const {
     throw Error("--words '" + words + "' holds no word; write letters or digits");
   }
   return result;
-}
-
-const nn::ModelStage& require_stage(const std::map<std::string, nn::ModelStage>& stages,
-                                    const std::string& kind, const std::string& model_path) {
-  const auto found = stages.find(kind);
-  if (found != stages.end()) return found->second;
-  std::string held;
-  for (const auto& [name, stage] : stages) held += (held.empty() ? "" : ", ") + name;
-  throw FileError(model_path, 0,
-                  "holds no " + kind + " (it holds: " + held +
-                      "); train it with \"remomask train " + kind + "\"");
 }
 
 }  // namespace remomask::tools

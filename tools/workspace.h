@@ -1,12 +1,10 @@
 #pragma once
 
 #include <CLI/App.hpp>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "nn/model_file.h"
 #include "remomask/search.h"
 #include "tools/program.h"
 
@@ -20,7 +18,6 @@ struct FileOptions {
   void add_database(CLI::App& command);
   std::string model_path() const;
   std::string database_path() const;
-  std::string index_path() const;  ///< --index, or beside the database
 };
 
 /// Options that choose which clips a search may return.
@@ -32,9 +29,5 @@ struct FilterOptions {
   void add(CLI::App& command);
   ClipFilter filter() const;
 };
-
-/// The stage of `kind`; throws Error that names the model file when it lacks it.
-const nn::ModelStage& require_stage(const std::map<std::string, nn::ModelStage>& stages,
-                                    const std::string& kind, const std::string& model_path);
 
 }  // namespace remomask::tools

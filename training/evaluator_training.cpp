@@ -232,7 +232,7 @@ nlohmann::json evaluator_run_identity(const evaluation::EvaluatorConfig& config,
 
 }  // namespace
 
-EvaluatorTrainingOptions::EvaluatorTrainingOptions(nn::Size size) {
+EvaluatorTrainingOptions::EvaluatorTrainingOptions(ModelSize size) {
   movement.stage_name = "evaluator movement";
   movement.steps = 600;
   movement.learning_rate = 1e-3;
@@ -245,7 +245,7 @@ EvaluatorTrainingOptions::EvaluatorTrainingOptions(nn::Size size) {
   trainer.warmup_steps = 100;
   trainer.weight_decay = 0.01;
   trainer.ema_decay = 0.99;
-  if (size == nn::Size::tiny) {
+  if (size == ModelSize::tiny) {
     movement.steps = 100;
     movement_batch = 32;
     trainer.steps = 200;
@@ -255,7 +255,7 @@ EvaluatorTrainingOptions::EvaluatorTrainingOptions(nn::Size size) {
     batch = 32;
     shifts = 31;
     validation_every = 50;
-  } else if (size == nn::Size::paper) {
+  } else if (size == ModelSize::paper) {
     movement.steps = 100000;
     movement.learning_rate = trainer.learning_rate = 1e-4;
     trainer.steps = 30000;

@@ -24,7 +24,7 @@ struct EvaluatorTrainingOptions {
   double word_drop = 0.1;   ///< share of the words read as unknown
   int64_t validation_every = 100;
   /// Defaults for a network of this size.
-  explicit EvaluatorTrainingOptions(nn::Size size = nn::Size::base);
+  explicit EvaluatorTrainingOptions(ModelSize size = ModelSize::base);
 };
 
 /// Pairs (text i, motion j) of a batch that may count as mismatches: another

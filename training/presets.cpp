@@ -94,28 +94,28 @@ void use_one_row(ModelConfig& model) {
   model.masked.attention = model.residual.attention = "joined";
 }
 
-ModelConfig model_preset(const nn::Preset& preset) {
+ModelConfig model_preset(const Preset& preset) {
   ModelConfig model;
   model.masked.sequence_hits = 2;
   switch (preset.size) {
-    case nn::Size::tiny:
+    case ModelSize::tiny:
       tiny_sizes(model);
       break;
-    case nn::Size::small:
+    case ModelSize::small:
       small_sizes(model);
       break;
-    case nn::Size::base:
+    case ModelSize::base:
       break;
-    case nn::Size::paper:
+    case ModelSize::paper:
       paper_sizes(model);
       break;
-    case nn::Size::momask:
+    case ModelSize::momask:
       momask_sizes(model);
       break;
   }
   // MoMask has no retrieval; its text vector comes from the base retriever.
   model.retriever = retriever::retriever_preset(preset.size);
-  model.tokenizer.preset = model.masked.preset = model.residual.preset = nn::preset_name(preset);
+  model.tokenizer.preset = model.masked.preset = model.residual.preset = preset_name(preset);
   for (int64_t* width : {&model.masked.embedding_width, &model.residual.embedding_width}) {
     *width = model.retriever.embedding;
   }

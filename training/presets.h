@@ -5,7 +5,7 @@
 
 #include "generator/masked_transformer.h"
 #include "generator/residual_transformer.h"
-#include "nn/preset.h"
+#include "base/preset.h"
 #include "retriever/config.h"
 #include "tokenizer/tokenizer.h"
 
@@ -22,7 +22,7 @@ struct ModelConfig {
 /// The sizes of a preset: paper are those of ReMoMask (masked 6 x 512, residual 6 x 384, codes
 /// 256 x 1024), momask those of MoMask (one row, no retrieval, ordinary attention, 8 x 384, codes
 /// 512 x 512).
-ModelConfig model_preset(const nn::Preset& preset);
+ModelConfig model_preset(const Preset& preset);
 
 /// MoMask's design in the sizes of `model`: one row for the whole body with twice
 /// the codes, convolutions wide enough for about as many weights, ordinary

@@ -31,7 +31,7 @@ int64_t meaning_identity(const db::TrainingClip& clip) {
 
 nlohmann::json fresh_text_tower(const std::vector<db::TrainingClip>& clips,
                                 const std::string& preset) {
-  encoders::TextEncoderConfig config = encoders::text_encoder_preset(nn::parse_preset(preset).size);
+  encoders::TextEncoderConfig config = encoders::text_encoder_preset(parse_preset(preset).size);
   std::vector<std::string> captions;
   for (const db::TrainingClip& clip : clips) {
     for (const std::string& caption : clip.captions)
@@ -88,21 +88,21 @@ nn::ModelStage retriever_stage(BmmModel& model, const retriever::RetrieverConfig
 
 }  // namespace
 
-RetrieverTrainingOptions::RetrieverTrainingOptions(nn::Size size) {
+RetrieverTrainingOptions::RetrieverTrainingOptions(ModelSize size) {
   trainer.stage_name = "retriever";
   trainer.steps = 1800;
   trainer.learning_rate = 1e-3;
   trainer.warmup_steps = 100;
   trainer.weight_decay = 0.01;
   trainer.ema_decay = 0.995;
-  if (size == nn::Size::tiny) {
+  if (size == ModelSize::tiny) {
     batch = 32;
     queue_size = 256;
     trainer.steps = 200;
     trainer.learning_rate = 2e-3;
     trainer.warmup_steps = 20;
     trainer.ema_decay = 0.9;
-  } else if (size == nn::Size::paper) {
+  } else if (size == ModelSize::paper) {
     batch = 128;
     queue_size = 65536;
     patch_keep = 1;

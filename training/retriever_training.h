@@ -28,7 +28,7 @@ struct RetrieverTrainingOptions {
   double same_meaning_weight = 1;
   int64_t validation_every = 200;
   /// Defaults for a network of this size: queues and a run that fit it.
-  explicit RetrieverTrainingOptions(nn::Size size = nn::Size::base);
+  explicit RetrieverTrainingOptions(ModelSize size = ModelSize::base);
 };
 
 /// What decides what is learnt, but for TrainerOptions: identifies a run.

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "nn/preset.h"
+#include "base/preset.h"
 #include "nn/threads.h"
 #include "remomask/error.h"
 #include "remomask/training.h"
@@ -13,7 +13,7 @@ TrainReport train_model(const TrainOptions& options, const Monitor& monitor) {
   namespace fs = std::filesystem;
   nn::set_compute_threads(options.threads);
   const training::TrainingSplits clips = training::load_splits(options.database);
-  training::TrainingRecipe recipe = training::training_recipe(nn::parse_preset(options.preset));
+  training::TrainingRecipe recipe = training::training_recipe(parse_preset(options.preset));
   const training::StageFile file = [&](const std::string& stage) {
     return (fs::path(options.folder) / (stage + ".safetensors")).string();
   };

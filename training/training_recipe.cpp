@@ -8,30 +8,30 @@ namespace remomask::training {
 
 namespace {
 
-bool has_published_size(nn::Size size) {
-  return size == nn::Size::paper || size == nn::Size::momask;
+bool has_published_size(ModelSize size) {
+  return size == ModelSize::paper || size == ModelSize::momask;
 }
 
-TextTrainingOptions text_training_preset(nn::Size size) {
+TextTrainingOptions text_training_preset(ModelSize size) {
   TextTrainingOptions options;
   options.trainer.steps = 800;
-  if (size == nn::Size::tiny) {
+  if (size == ModelSize::tiny) {
     options.trainer.steps = 40;
     options.batch = 16;
-  } else if (size == nn::Size::small) {
+  } else if (size == ModelSize::small) {
     options.trainer.steps = 500;
   }
   return options;
 }
 
-TokenizerTrainingOptions tokenizer_training_preset(nn::Size size) {
+TokenizerTrainingOptions tokenizer_training_preset(ModelSize size) {
   TokenizerTrainingOptions options;
-  if (size == nn::Size::tiny) {
+  if (size == ModelSize::tiny) {
     options.trainer.steps = 120;
     options.trainer.learning_rate = 2e-3;
     options.batch_frames = 512;
     options.validate_every = 60;
-  } else if (size == nn::Size::small) {
+  } else if (size == ModelSize::small) {
     options.trainer.steps = 2000;
     options.trainer.learning_rate = 2e-3;
     options.batch_frames = 1024;
@@ -45,7 +45,7 @@ TokenizerTrainingOptions tokenizer_training_preset(nn::Size size) {
   return options;
 }
 
-TransformerTrainingOptions transformer_preset(nn::Size size, const char* stage, int64_t base_steps,
+TransformerTrainingOptions transformer_preset(ModelSize size, const char* stage, int64_t base_steps,
                                               int64_t small_steps) {
   TransformerTrainingOptions options;
   options.trainer.stage_name = stage;
@@ -54,12 +54,12 @@ TransformerTrainingOptions transformer_preset(nn::Size size, const char* stage, 
   options.trainer.learning_rate = 6e-4;
   options.trainer.warmup_steps = 100;
   options.trainer.ema_decay = 0.99;
-  if (size == nn::Size::tiny) {
+  if (size == ModelSize::tiny) {
     options.trainer.steps = 60;
     options.trainer.learning_rate = 2e-3;
     options.batch = 16;
     options.validate_every = 30;
-  } else if (size == nn::Size::small) {
+  } else if (size == ModelSize::small) {
     options.trainer.steps = small_steps;
     options.trainer.learning_rate = 1e-3;
     options.batch = 16;
@@ -68,7 +68,7 @@ TransformerTrainingOptions transformer_preset(nn::Size size, const char* stage, 
     options.trainer.learning_rate = 2e-4;
     options.trainer.warmup_steps = 2000;
     options.trainer.ema_decay = 0.999;
-    options.batch = size == nn::Size::paper ? 256 : 64;
+    options.batch = size == ModelSize::paper ? 256 : 64;
   }
   return options;
 }
@@ -103,11 +103,11 @@ nlohmann::json stage_config(const TrainingRecipe& recipe, const std::string& sta
 
 }  // namespace
 
-TrainingRecipe training_recipe(const nn::Preset& preset) {
+TrainingRecipe training_recipe(const Preset& preset) {
   TrainingRecipe recipe;
-  recipe.preset = nn::preset_name(preset);
+  recipe.preset = preset_name(preset);
   recipe.model = model_preset(preset);
-  const nn::Size size = preset.size;
+  const ModelSize size = preset.size;
   recipe.text = encoders::text_encoder_preset(size);
   recipe.text_training = text_training_preset(size);
   recipe.retriever_training = RetrieverTrainingOptions(size);

@@ -28,7 +28,7 @@ struct TrainingRecipe {
 };
 
 /// The recipe of a preset.
-TrainingRecipe training_recipe(const nn::Preset& preset);
+TrainingRecipe training_recipe(const Preset& preset);
 
 /// The stages of the recipe in the order of training: text, retriever,
 /// tokenizer, masked, and residual unless there is one level only.

@@ -9,7 +9,7 @@ namespace remomask {
 namespace {
 
 encoders::TextEncoderConfig tiny_config() {
-  encoders::TextEncoderConfig config = encoders::text_encoder_preset(nn::Size::tiny);
+  encoders::TextEncoderConfig config = encoders::text_encoder_preset(ModelSize::tiny);
   config.vocabulary =
       text::train_wordpiece({"a person walks forward", "a person walks and waves"}, 300);
   return config;

@@ -9,7 +9,7 @@
 namespace remomask {
 
 evaluation::EvaluatorConfig tiny_evaluator_config() {
-  evaluation::EvaluatorConfig config = evaluation::evaluator_preset(nn::Size::tiny);
+  evaluation::EvaluatorConfig config = evaluation::evaluator_preset(ModelSize::tiny);
   std::vector<std::string> captions;
   for (const db::TrainingClip& clip : separable_clips(24, 2, 1))
     captions.push_back(clip.captions[0]);

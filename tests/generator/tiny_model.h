@@ -32,14 +32,14 @@ struct TinyModel {
 
   TinyModel() {
     const auto clips = captioned_clips();
-    const training::ModelConfig config = training::model_preset(nn::parse_preset("tiny"));
+    const training::ModelConfig config = training::model_preset(parse_preset("tiny"));
     const auto trainer = [](const std::string& name) {
       training::TrainerOptions options;
       options.steps = 2;
       options.stage_name = name;
       return options;
     };
-    training::RetrieverTrainingOptions retriever_options(nn::Size::tiny);
+    training::RetrieverTrainingOptions retriever_options(ModelSize::tiny);
     retriever_options.trainer = trainer("retriever");
     retriever_options.batch = 4;
     stages["retriever"] =

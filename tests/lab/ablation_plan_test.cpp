@@ -124,8 +124,8 @@ TEST(AblationPlan, RefusesWhatCannotBeCompared) {
 }
 
 TEST(AblationCost, GrowsWithSizesAndSteps) {
-  const training::TrainingRecipe tiny = training::training_recipe(nn::parse_preset("tiny")),
-                                 base = training::training_recipe(nn::parse_preset("base"));
+  const training::TrainingRecipe tiny = training::training_recipe(parse_preset("tiny")),
+                                 base = training::training_recipe(parse_preset("base"));
   for (const std::string& stage : training::recipe_stages(tiny)) {
     EXPECT_LT(lab::training_cost(tiny, stage), lab::training_cost(base, stage)) << stage;
     training::TrainingRecipe twice = tiny;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// Stages whose description differs from that of the full model.
 std::set<std::string> changed_stages(const std::string& variant) {
-  training::TrainingRecipe full = training::training_recipe(nn::parse_preset("small")),
+  training::TrainingRecipe full = training::training_recipe(parse_preset("small")),
                            other = full;
   lab::apply_variant(other, variant);
   std::set<std::string> changed;
@@ -44,7 +44,7 @@ TEST(Variants, ChangeOneThing) {
 }
 
 TEST(Variants, EveryOptionOfTheCodebooksTellsStagesApart) {
-  const training::TrainingRecipe recipe = training::training_recipe(nn::parse_preset("tiny"));
+  const training::TrainingRecipe recipe = training::training_recipe(parse_preset("tiny"));
   const auto differs = [&](auto change) {
     training::TrainingRecipe other = recipe;
     change(other.tokenizer_training.codebooks);
@@ -66,21 +66,21 @@ TEST(Variants, UnknownOnesAreRefused) {
        {"no-legs", "levels-0", "levels-9", "levels-", "levels-2x", "quantizer-dropout-95", ""}) {
     EXPECT_THROW(lab::find_variant(name), Error) << name;
   }
-  training::TrainingRecipe baseline = training::training_recipe(nn::parse_preset("momask-tiny"));
+  training::TrainingRecipe baseline = training::training_recipe(parse_preset("momask-tiny"));
   EXPECT_THROW(lab::apply_variant(baseline, "no-ssta"), Error);
   EXPECT_NO_THROW(lab::apply_variant(baseline, "full"));
 }
 
 TEST(Variants, EveryPresetHasARecipeForEveryStage) {
-  for (const std::string& preset : nn::preset_names()) {
-    const training::TrainingRecipe recipe = training::training_recipe(nn::parse_preset(preset));
+  for (const std::string& preset : preset_names()) {
+    const training::TrainingRecipe recipe = training::training_recipe(parse_preset(preset));
     for (const std::string& stage : training::recipe_stages(recipe)) {
       EXPECT_EQ(training::stage_trainer(recipe, stage).stage_name, stage) << preset;
       EXPECT_GT(training::stage_trainer(recipe, stage).steps, 0) << preset;
       EXPECT_FALSE(training::stage_description(recipe, stage).at("config").empty());
     }
   }
-  training::TrainingRecipe one_level = training::training_recipe(nn::parse_preset("tiny"));
+  training::TrainingRecipe one_level = training::training_recipe(parse_preset("tiny"));
   lab::apply_variant(one_level, "levels-1");
   EXPECT_EQ(training::recipe_stages(one_level).back(), "masked");
   EXPECT_THROW(training::stage_trainer(one_level, "evaluator"), Error);
@@ -116,7 +116,7 @@ TEST(Variants, TrainStoreAndGenerate) {
   for (const lab::ModelVariant& variant : lab::model_variants()) names.push_back(variant.name);
   names.push_back("levels-1");
   for (const std::string& name : names) {
-    training::TrainingRecipe recipe = training::training_recipe(nn::parse_preset("tiny"));
+    training::TrainingRecipe recipe = training::training_recipe(parse_preset("tiny"));
     lab::apply_variant(recipe, name);
     recipe.tokenizer_training.window = 32;
     const training::StageFile file = [&](const std::string& stage) {

@@ -135,8 +135,8 @@ TEST(Pipeline, WrongInputsAreErrors) {
 }
 
 TEST(Presets, SizesFitTogether) {
-  for (const std::string& name : nn::preset_names()) {
-    const training::ModelConfig model = training::model_preset(nn::parse_preset(name));
+  for (const std::string& name : preset_names()) {
+    const training::ModelConfig model = training::model_preset(parse_preset(name));
     EXPECT_EQ(model.masked.codes, model.tokenizer.codes) << name;
     EXPECT_EQ(model.residual.rows, model.tokenizer.rows) << name;
     EXPECT_EQ(model.residual.levels, model.tokenizer.levels) << name;
@@ -144,11 +144,11 @@ TEST(Presets, SizesFitTogether) {
     EXPECT_NO_THROW(generator::MaskedTransformer(model.masked));
     EXPECT_NO_THROW(generator::ResidualTransformer(model.residual));
   }
-  EXPECT_EQ(training::model_preset(nn::parse_preset("momask")).masked.rows, 1);
-  EXPECT_EQ(training::model_preset(nn::parse_preset("momask")).masked.max_hits, 0);
-  EXPECT_EQ(training::model_preset(nn::parse_preset("paper")).masked.width, 512);
-  EXPECT_EQ(training::model_preset(nn::parse_preset("paper")).residual.width, 384);
-  EXPECT_THROW(training::model_preset(nn::parse_preset("huge")), Error);
+  EXPECT_EQ(training::model_preset(parse_preset("momask")).masked.rows, 1);
+  EXPECT_EQ(training::model_preset(parse_preset("momask")).masked.max_hits, 0);
+  EXPECT_EQ(training::model_preset(parse_preset("paper")).masked.width, 512);
+  EXPECT_EQ(training::model_preset(parse_preset("paper")).residual.width, 384);
+  EXPECT_THROW(training::model_preset(parse_preset("huge")), Error);
 }
 
 }  // namespace

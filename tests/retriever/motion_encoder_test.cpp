@@ -102,7 +102,7 @@ TEST(MotionEncoder, RefusesWhatItCannotRead) {
 TEST(MotionEncoder, KeepsTokensApartAtTheStart) {
   at::NoGradGuard no_grad;
   torch::manual_seed(1);
-  retriever::RetrieverConfig config = retriever::retriever_preset(nn::Size::base);
+  retriever::RetrieverConfig config = retriever::retriever_preset(ModelSize::base);
   config.text_tower = tiny_retriever_config().text_tower;
   retriever::MotionEncoder encoder(config);
   const motion::Features clip = random_features(196, 1);
@@ -144,14 +144,14 @@ TEST(MotionEncoder, OneEncoderHasAboutAsManyWeightsAsSix) {
       count += parameter.numel();
     return static_cast<double>(count);
   };
-  for (const nn::Size size : {nn::Size::small, nn::Size::base}) {
+  for (const ModelSize size : {ModelSize::small, ModelSize::base}) {
     retriever::RetrieverConfig config = retriever::retriever_preset(size);
     const double six = weights(config);
     retriever::use_whole_body_encoder(config);
-    EXPECT_NEAR(weights(config) / six, 1, 0.2) << nn::size_name(size);
+    EXPECT_NEAR(weights(config) / six, 1, 0.2) << size_name(size);
     EXPECT_EQ(nlohmann::json(config).get<retriever::RetrieverConfig>().encoders, 1);
   }
-  nlohmann::json old_file = retriever::retriever_preset(nn::Size::base);
+  nlohmann::json old_file = retriever::retriever_preset(ModelSize::base);
   old_file.erase("encoders");
   EXPECT_EQ(old_file.get<retriever::RetrieverConfig>().encoders, 6);
 }

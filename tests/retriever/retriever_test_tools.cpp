@@ -49,8 +49,8 @@ std::vector<db::TrainingClip> separable_clips(int kinds, int repeats, uint64_t s
 }
 
 retriever::RetrieverConfig tiny_retriever_config() {
-  retriever::RetrieverConfig config = retriever::retriever_preset(nn::Size::tiny);
-  encoders::TextEncoderConfig text = encoders::text_encoder_preset(nn::Size::tiny);
+  retriever::RetrieverConfig config = retriever::retriever_preset(ModelSize::tiny);
+  encoders::TextEncoderConfig text = encoders::text_encoder_preset(ModelSize::tiny);
   std::vector<std::string> captions;
   for (int kind = 0; kind < 24; ++kind) captions.push_back(caption_of_kind(kind));
   text.vocabulary = text::train_wordpiece(captions, 300);

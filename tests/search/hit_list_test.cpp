@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "search/filter.h"
+#include "db/clip_filter.h"
 #include "tests/db/db_test_tools.h"
 #include "tests/index/index_test_tools.h"
 
@@ -79,7 +79,7 @@ TEST_F(HitListTest, GroupsAndLooksFurther) {
 TEST_F(HitListTest, FiltersBeforeItGroups) {
   ClipFilter filter;
   filter.splits = {"val"};
-  scene_.allowed = search::matching_clips(*database_, filter);
+  scene_.allowed = db::matching_clips(*database_, filter);
   EXPECT_EQ(names(3, true), (Names{"clip1", "clip21", "clip23"}));
   EXPECT_EQ(hits(3, true)[0].folded, 9);
 }

@@ -14,7 +14,7 @@ namespace remomask {
 namespace {
 
 training::EvaluatorTrainingOptions quick_evaluator_options(int64_t steps) {
-  training::EvaluatorTrainingOptions options(nn::Size::tiny);
+  training::EvaluatorTrainingOptions options(ModelSize::tiny);
   options.window = 20;
   options.movement.steps = 4;
   options.trainer.steps = steps;
@@ -64,7 +64,7 @@ TEST(EvaluatorTraining, ResumedRunEqualsTheUninterrupted) {
   };
   remove_files();
   training::EvaluatorTrainingOptions options = quick_evaluator_options(5);
-  const evaluation::EvaluatorConfig config = evaluation::evaluator_preset(nn::Size::tiny);
+  const evaluation::EvaluatorConfig config = evaluation::evaluator_preset(ModelSize::tiny);
   const nn::ModelStage whole = training::train_evaluator(clips, clips, config, options, {});
 
   options.trainer.checkpoint_path = path;
@@ -98,7 +98,7 @@ TEST(EvaluatorTraining, LearnsSeparableMotionsSelectsOnValAndSurvivesTheFile) {
   options.movement.steps = 30;
   options.validation_every = 50;
   const nn::ModelStage stage = training::train_evaluator(
-      train, val, evaluation::evaluator_preset(nn::Size::tiny), options, {});
+      train, val, evaluation::evaluator_preset(ModelSize::tiny), options, {});
   // The step of the best validation, the first of equals.
   int64_t best_step = 0;
   double best = -1;
@@ -129,11 +129,11 @@ TEST(EvaluatorTraining, NeedsCaptionsAndFrames) {
   auto clips = separable_clips(4, 1, 1);
   training::EvaluatorTrainingOptions options = quick_evaluator_options(2);
   options.window = 100;  // longer than the clips
-  EXPECT_THROW(training::train_evaluator(clips, {}, evaluation::evaluator_preset(nn::Size::tiny),
+  EXPECT_THROW(training::train_evaluator(clips, {}, evaluation::evaluator_preset(ModelSize::tiny),
                                          options, {}),
                Error);
   for (db::TrainingClip& clip : clips) clip.captions = {" . "};
-  EXPECT_THROW(training::train_evaluator(clips, {}, evaluation::evaluator_preset(nn::Size::tiny),
+  EXPECT_THROW(training::train_evaluator(clips, {}, evaluation::evaluator_preset(ModelSize::tiny),
                                          quick_evaluator_options(2), {}),
                Error);
 }

@@ -52,7 +52,7 @@ TEST(MaskedWords, TrainingLearnsTheGrammarAndRepeatsExactly) {
   options.validation_every = 60;
   const auto run = [&] {
     return training::train_text_encoder(grammar_captions(),
-                                        encoders::text_encoder_preset(nn::Size::tiny), options, {});
+                                        encoders::text_encoder_preset(ModelSize::tiny), options, {});
   };
   const nn::ModelStage first = run();
   EXPECT_EQ(first.kind, "text");
@@ -66,7 +66,7 @@ TEST(MaskedWords, TrainingLearnsTheGrammarAndRepeatsExactly) {
 
 TEST(MaskedWords, TooFewCaptionsAreAnError) {
   EXPECT_THROW(training::train_text_encoder({"a", "b", "b"},
-                                            encoders::text_encoder_preset(nn::Size::tiny), {}, {}),
+                                            encoders::text_encoder_preset(ModelSize::tiny), {}, {}),
                Error);
 }
 

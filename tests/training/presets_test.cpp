@@ -21,19 +21,19 @@ int64_t parameter_count(const torch::nn::Module& module) {
 }
 
 TEST(PresetsTest, SizesAgreeBetweenTheNetworks) {
-  for (const std::string& name : nn::preset_names()) {
-    const training::ModelConfig model = training::model_preset(nn::parse_preset(name));
+  for (const std::string& name : preset_names()) {
+    const training::ModelConfig model = training::model_preset(parse_preset(name));
     EXPECT_EQ(model.masked.rows, model.tokenizer.rows) << name;
     EXPECT_EQ(model.residual.codes, model.tokenizer.codes) << name;
     EXPECT_EQ(model.masked.embedding_width, model.retriever.embedding) << name;
     EXPECT_NO_THROW(tokenizer::check_tokenizer_config(model.tokenizer)) << name;
   }
-  EXPECT_THROW(training::model_preset(nn::parse_preset("huge")), Error);
+  EXPECT_THROW(training::model_preset(parse_preset("huge")), Error);
 }
 
 // The published depth, width and shape: what the preset is for.
 TEST(PresetsTest, MomaskIsOneRowWithoutRetrieval) {
-  const training::ModelConfig model = training::model_preset(nn::parse_preset("momask"));
+  const training::ModelConfig model = training::model_preset(parse_preset("momask"));
   EXPECT_EQ(model.tokenizer.rows, 1);
   EXPECT_EQ(model.masked.max_hits, 0);
   tokenizer::TokenizerNetwork network(model.tokenizer);
@@ -44,9 +44,9 @@ TEST(PresetsTest, MomaskIsOneRowWithoutRetrieval) {
 // A comparison of the two designs is fair when neither has more weights.
 TEST(PresetsTest, MomaskOfASizeHasAboutItsWeights) {
   for (const char* size : {"small", "base"}) {
-    const training::ModelConfig body = training::model_preset(nn::parse_preset(size));
+    const training::ModelConfig body = training::model_preset(parse_preset(size));
     const training::ModelConfig row =
-        training::model_preset(nn::parse_preset(std::string("momask-") + size));
+        training::model_preset(parse_preset(std::string("momask-") + size));
     EXPECT_EQ(row.tokenizer.rows, 1);
     EXPECT_EQ(row.masked.attention, "joined");
     EXPECT_EQ(row.masked.preset, std::string("momask-") + size);
@@ -58,16 +58,16 @@ TEST(PresetsTest, MomaskOfASizeHasAboutItsWeights) {
                 1, 0.2)
         << size;
   }
-  EXPECT_EQ(nn::parse_preset("momask-base"), (nn::Preset{nn::Size::base, true}));
-  EXPECT_EQ(nn::parse_preset("momask"), (nn::Preset{nn::Size::momask, false}));
-  for (const std::string& name : nn::preset_names()) {
-    EXPECT_EQ(nn::preset_name(nn::parse_preset(name)), name);
+  EXPECT_EQ(parse_preset("momask-base"), (Preset{ModelSize::base, true}));
+  EXPECT_EQ(parse_preset("momask"), (Preset{ModelSize::momask, false}));
+  for (const std::string& name : preset_names()) {
+    EXPECT_EQ(preset_name(parse_preset(name)), name);
   }
-  EXPECT_THROW(nn::parse_preset("momask-paper"), Error);
+  EXPECT_THROW(parse_preset("momask-paper"), Error);
 }
 
 TEST(PresetsTest, PaperTransformersHaveThePublishedShape) {
-  const training::ModelConfig model = training::model_preset(nn::parse_preset("paper"));
+  const training::ModelConfig model = training::model_preset(parse_preset("paper"));
   EXPECT_EQ(model.masked.layers, 6);
   EXPECT_EQ(model.masked.width, 512);
   EXPECT_EQ(model.residual.width, 384);
@@ -83,8 +83,8 @@ TEST(PresetsTest, OneRowWithoutRetrievalWorksFromEndToEnd) {
     clips[i].group = static_cast<int>(i);
     clips[i].captions = {i % 2 == 0 ? "a person walks" : "a person waves"};
   }
-  training::ModelConfig model = training::model_preset(nn::parse_preset("momask"));
-  model.retriever = retriever::retriever_preset(nn::Size::tiny);
+  training::ModelConfig model = training::model_preset(parse_preset("momask"));
+  model.retriever = retriever::retriever_preset(ModelSize::tiny);
   model.tokenizer.widths = {16, 16, 16};
   model.tokenizer.codes = model.masked.codes = model.residual.codes = 16;
   model.tokenizer.code_width = 8;
@@ -98,7 +98,7 @@ TEST(PresetsTest, OneRowWithoutRetrievalWorksFromEndToEnd) {
     return options;
   };
   std::map<std::string, nn::ModelStage> stages;
-  training::RetrieverTrainingOptions retriever_options(nn::Size::tiny);
+  training::RetrieverTrainingOptions retriever_options(ModelSize::tiny);
   retriever_options.trainer = trainer("retriever");
   retriever_options.batch = 4;
   stages["retriever"] =

@@ -16,7 +16,7 @@ namespace remomask {
 namespace {
 
 training::RetrieverTrainingOptions quick_options(int64_t steps) {
-  training::RetrieverTrainingOptions options(nn::Size::tiny);
+  training::RetrieverTrainingOptions options(ModelSize::tiny);
   options.trainer.steps = steps;
   options.batch = 16;
   options.queue_size = 24;
@@ -51,7 +51,7 @@ TEST(RetrieverTraining, ResumedRunEqualsTheUninterrupted) {
   const std::string path = testing::TempDir() + "/retriever_checkpoint.safetensors";
   std::filesystem::remove(path);
   training::RetrieverTrainingOptions options = quick_options(6);
-  const retriever::RetrieverConfig config = retriever::retriever_preset(nn::Size::tiny);
+  const retriever::RetrieverConfig config = retriever::retriever_preset(ModelSize::tiny);
   const nn::ModelStage whole = training::train_retriever(clips, clips, {}, config, options, {});
 
   options.trainer.checkpoint_path = path;
@@ -82,7 +82,7 @@ TEST(RetrieverTraining, ClipsOfOneMeaningWeighAsAskedFor) {
   const auto trained = [&](double weight, double rate) {
     options.same_meaning_weight = weight;
     options.trainer.learning_rate = rate;
-    return training::train_retriever(clips, {}, {}, retriever::retriever_preset(nn::Size::tiny),
+    return training::train_retriever(clips, {}, {}, retriever::retriever_preset(ModelSize::tiny),
                                      options, {})
         .tensors;
   };
@@ -103,7 +103,7 @@ TEST(RetrieverTraining, ClipsOfOneMeaningWeighAsAskedFor) {
 TEST(RetrieverTraining, LearnsSeparableMotionsAndSurvivesTheFile) {
   const auto train = separable_clips(24, 8, 1), test = separable_clips(24, 2, 99);
   const nn::ModelStage stage = training::train_retriever(
-      train, {}, {}, retriever::retriever_preset(nn::Size::tiny), quick_options(150), {});
+      train, {}, {}, retriever::retriever_preset(ModelSize::tiny), quick_options(150), {});
   const retriever::Retriever retriever(stage);
   evaluation::RetrievalOptions measure;
   measure.protocols = {evaluation::RetrievalProtocol::duplicates};
@@ -139,11 +139,11 @@ TEST(RetrieverTraining, StartsFromAPretrainedTower) {
   training::TextTrainingOptions text_options;
   text_options.trainer.steps = 2;
   const nn::ModelStage text = training::train_text_encoder(
-      captions, encoders::text_encoder_preset(nn::Size::tiny), text_options, {});
+      captions, encoders::text_encoder_preset(ModelSize::tiny), text_options, {});
   training::RetrieverTrainingOptions options = quick_options(1);
   options.trainer.learning_rate = 0;
   const nn::ModelStage stage = training::train_retriever(
-      clips, {}, text, retriever::retriever_preset(nn::Size::tiny), options, {});
+      clips, {}, text, retriever::retriever_preset(ModelSize::tiny), options, {});
   EXPECT_EQ(stage.config["text_tower"]["vocabulary"], text.config["vocabulary"]);
   EXPECT_TRUE(stage.tensors.at("text_tower.tokens.weight").equal(text.tensors.at("tokens.weight")));
 }
@@ -151,12 +151,12 @@ TEST(RetrieverTraining, StartsFromAPretrainedTower) {
 TEST(RetrieverTraining, ErrorsSayWhatToDo) {
   auto clips = separable_clips(2, 1, 1);
   for (db::TrainingClip& clip : clips) clip.captions = {" . "};
-  EXPECT_THROW(training::train_retriever(clips, {}, {}, retriever::retriever_preset(nn::Size::tiny),
+  EXPECT_THROW(training::train_retriever(clips, {}, {}, retriever::retriever_preset(ModelSize::tiny),
                                          quick_options(1), {}),
                Error);
   EXPECT_THROW(retriever::Retriever(nn::ModelStage{"tokenizer", {}, {}}), Error);
   EXPECT_THROW(retriever::Retriever(nn::ModelStage{"retriever", {{"preset", "tiny"}}, {}}), Error);
-  EXPECT_THROW(nn::parse_preset("huge"), Error);
+  EXPECT_THROW(parse_preset("huge"), Error);
   EXPECT_THROW(retriever::parse_queues("three"), Error);
 }
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include "evaluation/retrieval_metrics.h"
-#include "tools/evaluate_command.h"
+#include "nn/model_file.h"
+#include "retriever/retriever.h"
+#include "tools/evaluate_input.h"
 
 namespace remomask::tools {
 
@@ -66,49 +68,25 @@ void print_protocol(const evaluation::ProtocolEvaluation& protocol,
 
 }  // namespace
 
-void register_evaluate_retrieval(CLI::App& parent, Program& program) {
-  struct Options {
-    EvaluationInput input;
-    std::vector<std::string> protocols;
-    evaluation::RetrievalOptions measure;
-  };
-  auto options = std::make_shared<Options>();
-  evaluation::RetrievalOptions& measure = options->measure;
-  CLI::App* command =
-      add_command(parent, "retrieval", "recall and median rank of search by text and by motion",
-                  "remomask evaluate retrieval --db motions.sqlite --protocol duplicates");
-  options->input.add(*command);
-  command
-      ->add_option("--protocol", options->protocols,
-                   "all, threshold, dissimilar, small-batch or duplicates (repeatable, or a list "
-                   "with commas; default: each)")
-      ->delimiter(',');
-  command
-      ->add_option("--threshold", measure.settings.threshold,
-                   "captions as alike as this are the same in the protocol threshold")
-      ->check(CLI::Range(0.5, 1.0))
-      ->capture_default_str();
-  command
-      ->add_option("--resamples", measure.bootstrap.resamples, "of the intervals; 0: no intervals")
-      ->check(CLI::Range(0, 1000000))
-      ->capture_default_str();
-  command->add_flag("--all-captions", measure.all_captions, "every caption, not the first alone");
-  command->callback([options, &program] {
-    if (!options->protocols.empty()) options->measure.protocols.clear();
-    for (const std::string& name : options->protocols) {
-      options->measure.protocols.push_back(evaluation::parse_retrieval_protocol(name));
-    }
-    const std::string model_path = options->input.files.model_path();
-    const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
-    const auto clips = options->input.load(retriever.feature_mode());
-    const evaluation::RetrievalEvaluation result =
-        evaluation::evaluate_retrieval(retriever, clips, options->measure, program.monitor());
-    program.finish_progress();
-    if (program.json) return program.print_json(options->input.stamped(result, clips));
-    for (const evaluation::ProtocolEvaluation& protocol : result.protocols) {
-      print_protocol(protocol, result, "split " + options->input.split);
-    }
-  });
+void run_evaluate_retrieval(const EvaluateRetrievalCommand& command, Program& program) {
+  evaluation::RetrievalOptions measure;
+  if (command.threshold) measure.settings.threshold = *command.threshold;
+  if (command.resamples) measure.bootstrap.resamples = *command.resamples;
+  measure.all_captions = command.all_captions;
+  if (!command.protocols.empty()) measure.protocols.clear();
+  for (const std::string& name : command.protocols) {
+    measure.protocols.push_back(evaluation::parse_retrieval_protocol(name));
+  }
+  const std::string model_path = command.input.files.model_path();
+  const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
+  const auto clips = load_clips(command.input, command.input.split, retriever.feature_mode());
+  const evaluation::RetrievalEvaluation result =
+      evaluation::evaluate_retrieval(retriever, clips, measure, program.monitor());
+  program.finish_progress();
+  if (program.json) return program.print_json(stamped(command.input, result, clips));
+  for (const evaluation::ProtocolEvaluation& protocol : result.protocols) {
+    print_protocol(protocol, result, "split " + command.input.split);
+  }
 }
 
 }  // namespace remomask::tools

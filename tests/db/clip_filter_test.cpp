@@ -1,4 +1,4 @@
-#include "search/filter.h"
+#include "db/clip_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -25,15 +25,15 @@ std::vector<db::Clip> example_clips() {
 
 std::vector<int64_t> ids_with(const std::string& condition) {
   ClipFilter filter;
-  filter.labels = {search::parse_label_condition(condition)};
-  return search::matching_clips(example_clips(), filter);
+  filter.labels = {db::parse_label_condition(condition)};
+  return db::matching_clips(example_clips(), filter);
 }
 
 using Ids = std::vector<int64_t>;
 
 TEST(ClipFilter, EmptyFilterTakesAll) {
   EXPECT_TRUE(ClipFilter().empty());
-  EXPECT_EQ(search::matching_clips(example_clips(), {}), (Ids{1, 2, 3, 4, 5}));
+  EXPECT_EQ(db::matching_clips(example_clips(), {}), (Ids{1, 2, 3, 4, 5}));
 }
 
 TEST(ClipFilter, LabelsTextListAndNested) {
@@ -51,19 +51,19 @@ TEST(ClipFilter, LabelsTextListAndNested) {
 TEST(ClipFilter, AllLabelConditionsMustHold) {
   ClipFilter filter;
   filter.labels = {{"content", "walk"}, {"actions", "walk"}};
-  EXPECT_EQ(search::matching_clips(example_clips(), filter), (Ids{1}));
+  EXPECT_EQ(db::matching_clips(example_clips(), filter), (Ids{1}));
 }
 
 TEST(ClipFilter, SplitsAndLengths) {
   ClipFilter filter;
   filter.splits = {"test", "val"};
-  EXPECT_EQ(search::matching_clips(example_clips(), filter), (Ids{4, 5}));
+  EXPECT_EQ(db::matching_clips(example_clips(), filter), (Ids{4, 5}));
   filter = {};
   filter.min_seconds = 4;
   filter.max_seconds = 8;
-  EXPECT_EQ(search::matching_clips(example_clips(), filter), (Ids{2, 3, 4}));
+  EXPECT_EQ(db::matching_clips(example_clips(), filter), (Ids{2, 3, 4}));
   filter.max_seconds = 7.9;
-  EXPECT_EQ(search::matching_clips(example_clips(), filter), (Ids{2, 3}));
+  EXPECT_EQ(db::matching_clips(example_clips(), filter), (Ids{2, 3}));
 }
 
 TEST(ClipFilter, TagsLicencesAndSpeed) {
@@ -76,29 +76,29 @@ TEST(ClipFilter, TagsLicencesAndSpeed) {
   ClipFilter filter;
   filter.tags = {"good"};
   EXPECT_FALSE(filter.empty());
-  EXPECT_EQ(search::matching_clips(clips, filter), (Ids{1, 2}));
+  EXPECT_EQ(db::matching_clips(clips, filter), (Ids{1, 2}));
   filter.tags = {"good", "new"};
-  EXPECT_EQ(search::matching_clips(clips, filter), (Ids{1}));
+  EXPECT_EQ(db::matching_clips(clips, filter), (Ids{1}));
   filter = {};
   filter.licences = {"MIT", "CC0"};
   EXPECT_FALSE(filter.empty());
-  EXPECT_EQ(search::matching_clips(clips, filter), (Ids{3, 4}));
+  EXPECT_EQ(db::matching_clips(clips, filter), (Ids{3, 4}));
   filter = {};
   filter.min_speed = 0.5;
   EXPECT_FALSE(filter.empty());
-  EXPECT_EQ(search::matching_clips(clips, filter), (Ids{2, 3, 4, 5}));
+  EXPECT_EQ(db::matching_clips(clips, filter), (Ids{2, 3, 4, 5}));
   filter.max_speed = 1.5;
-  EXPECT_EQ(search::matching_clips(clips, filter), (Ids{2, 3, 4}));
+  EXPECT_EQ(db::matching_clips(clips, filter), (Ids{2, 3, 4}));
   filter.max_speed = 0.4;
-  EXPECT_NE(error_of([&] { search::matching_clips(clips, filter); }).find("0.5 m/s"),
+  EXPECT_NE(error_of([&] { db::matching_clips(clips, filter); }).find("0.5 m/s"),
             std::string::npos);
   filter = {};
   filter.tags = {"goood"};
-  EXPECT_NE(error_of([&] { search::matching_clips(clips, filter); }).find("'goood'"),
+  EXPECT_NE(error_of([&] { db::matching_clips(clips, filter); }).find("'goood'"),
             std::string::npos);
   filter = {};
   filter.licences = {"GPL"};
-  EXPECT_NE(error_of([&] { search::matching_clips(clips, filter); }).find("'GPL'"),
+  EXPECT_NE(error_of([&] { db::matching_clips(clips, filter); }).find("'GPL'"),
             std::string::npos);
 }
 
@@ -113,16 +113,16 @@ TEST(ClipFilter, CaptionsOfADatabase) {
     ids.push_back(database.add_clip(clip, walking_motion(20, static_cast<int>(ids.size()))));
   }
   ClipFilter filter;
-  EXPECT_EQ(search::matching_clips(database, filter), ids);
+  EXPECT_EQ(db::matching_clips(database, filter), ids);
   filter.caption_query = "running";
   EXPECT_FALSE(filter.empty());
-  EXPECT_EQ(search::matching_clips(database, filter), (Ids{ids[1], ids[2]}));
+  EXPECT_EQ(db::matching_clips(database, filter), (Ids{ids[1], ids[2]}));
   filter.caption_query = "person";
   filter.splits = {"train"};
-  EXPECT_EQ(search::matching_clips(database, filter), (Ids{ids[2]}));
-  EXPECT_THROW(search::matching_clips(database.clips(), filter), Error);
+  EXPECT_EQ(db::matching_clips(database, filter), (Ids{ids[2]}));
+  EXPECT_THROW(db::matching_clips(database.clips(), filter), Error);
   filter.caption_query = "person AND";
-  EXPECT_THROW(search::matching_clips(database, filter), Error);
+  EXPECT_THROW(db::matching_clips(database, filter), Error);
 }
 
 TEST(ClipFilter, Exclusions) {
@@ -130,26 +130,26 @@ TEST(ClipFilter, Exclusions) {
   filter.excluded_groups = {"one"};
   filter.excluded_clips = {5};
   EXPECT_FALSE(filter.empty());
-  EXPECT_EQ(search::matching_clips(example_clips(), filter), (Ids{3, 4}));
+  EXPECT_EQ(db::matching_clips(example_clips(), filter), (Ids{3, 4}));
   filter = {};
   filter.exclude_mirrored = true;
-  EXPECT_EQ(search::matching_clips(example_clips(), filter), (Ids{1, 3, 4, 5}));
+  EXPECT_EQ(db::matching_clips(example_clips(), filter), (Ids{1, 3, 4, 5}));
 }
 
 TEST(ClipFilter, RefusesMistakes) {
   ClipFilter filter;
   filter.splits = {"tests"};
-  EXPECT_NE(error_of([&] { search::matching_clips(example_clips(), filter); }).find("'tests'"),
+  EXPECT_NE(error_of([&] { db::matching_clips(example_clips(), filter); }).find("'tests'"),
             std::string::npos);
   filter = {};
   filter.min_seconds = 3;
   filter.max_seconds = 2;
-  EXPECT_NE(error_of([&] { search::matching_clips(example_clips(), filter); }), "");
+  EXPECT_NE(error_of([&] { db::matching_clips(example_clips(), filter); }), "");
   EXPECT_NE(error_of([] { ids_with("contents=walk"); }).find("'contents'"), std::string::npos);
-  EXPECT_NE(error_of([] { search::parse_label_condition("walk"); }).find("key=value"),
+  EXPECT_NE(error_of([] { db::parse_label_condition("walk"); }).find("key=value"),
             std::string::npos);
-  EXPECT_NE(error_of([] { search::parse_label_condition("=walk"); }), "");
-  EXPECT_EQ(search::parse_label_condition("a=b=c").value, "b=c");
+  EXPECT_NE(error_of([] { db::parse_label_condition("=walk"); }), "");
+  EXPECT_EQ(db::parse_label_condition("a=b=c").value, "b=c");
 }
 
 }  // namespace

@@ -1,33 +1,23 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
 #include "db/database.h"
+#include "evaluation/evaluator.h"
 #include "evaluation/generation_report.h"
 #include "index/vector_index.h"
 #include "nn/model_file.h"
 #include "pipeline/motion_embedding.h"
 #include "remomask/text_to_motion.h"
 #include "tools/evaluate_command.h"
-#include "tools/generation_options.h"
-#include "tools/workspace.h"
+#include "tools/index_path.h"
 
 namespace remomask::tools {
 
 namespace {
 
 constexpr double kMaxEvaluatedSeconds = 9.8;  // what the transformers see at once
-
-struct EvaluateGenerationOptions {
-  FileOptions files;
-  EvaluatorOption evaluator;
-  GenerationOptions generation;
-  evaluation::GenerationRunOptions run;
-  evaluation::GenerationReportOptions report;
-  std::string judge = "evaluator";
-};
 
 std::string figure_text(const evaluation::Figure& figure) {
   return std::isnan(figure.mean) ? "-"
@@ -92,9 +82,12 @@ void print_report(const evaluation::GenerationReport& report) {
   }
 }
 
-void evaluate_generation(const EvaluateGenerationOptions& options, Program& program) {
+}  // namespace
+
+void run_evaluate_generation(const EvaluateGenerationCommand& options, Program& program) {
   const std::string model_path = options.files.model_path();
-  const evaluation::Evaluator evaluator = options.evaluator.load();
+  const evaluation::Evaluator evaluator =
+      evaluation::load_evaluator(options.evaluator.evaluator_path());
   OpenOptions open;
   open.index = options.files.index;
   open.threads = program.threads;
@@ -102,7 +95,7 @@ void evaluate_generation(const EvaluateGenerationOptions& options, Program& prog
   const db::Database database(options.files.database_path(), db::OpenMode::read_only);
   const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
   const auto index =
-      index::VectorIndex::open(options.files.index_path(), database, retriever.hash());
+      index::VectorIndex::open(index_path(options.files), database, retriever.hash());
   index.require_current(database);
   const auto judge = options.judge == "evaluator"
                          ? evaluation::evaluator_judge(evaluator, database)
@@ -119,59 +112,23 @@ void evaluate_generation(const EvaluateGenerationOptions& options, Program& prog
     one.evidence.excluded_groups = {prompt.group};
     return remomask.generate(prompt.text, one).motion;
   };
-  evaluation::GenerationRunOptions run_options = options.run;
+  evaluation::GenerationRunOptions run_options;
+  run_options.prompts = options.prompts;
+  run_options.seed = options.prompt_seed;
+  run_options.prompt_split = options.prompt_split;
+  run_options.draw = options.draw;
+  run_options.repeats = options.repeats;
+  run_options.modality_prompts = options.modality_prompts;
+  run_options.results_path = options.results;
   run_options.generator = remomask.identity(chosen);
   const evaluation::JudgeGallery gallery(database, *judge, run_options.gallery_splits);
   const evaluation::GenerationRun run = evaluation::run_generation(
       database, gallery, *judge, evaluator, generate, run_options, program.monitor());
   const evaluation::GenerationReport report =
-      evaluation::report_generation(run, database, gallery, evaluator, options.report);
+      evaluation::report_generation(run, database, gallery, evaluator);
   program.finish_progress();
   if (program.json) return program.print_json(report);
   print_report(report);
-}
-
-}  // namespace
-
-void register_evaluate_generation(CLI::App& parent, Program& program) {
-  auto options = std::make_shared<EvaluateGenerationOptions>();
-  CLI::App* command = add_command(
-      parent, "generation",
-      "generated motions beside real ones: FID, R-precision, content, sides, physics",
-      "remomask evaluate generation --db motions.sqlite --prompts 200 --results outcomes.jsonl");
-  options->files.add_model(*command);
-  options->files.add_database(*command);
-  options->evaluator.add(*command);
-  options->generation.add(*command);
-  evaluation::GenerationRunOptions& run = options->run;
-  command
-      ->add_option("--prompts", run.prompts, "number of prompts; 0: every clip of the split once")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--split", run.prompt_split, "captions of these clips")
-      ->capture_default_str();
-  command
-      ->add_option("--draw", run.draw,
-                   "even: prompts spread over the contents; uniform: every clip equally likely")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"even", "uniform"}));
-  command->add_option("--prompt-seed", run.seed, "choice of the prompts")->capture_default_str();
-  command->add_option("--repeats", run.repeats, "generations of every prompt (papers: 20)")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--modality-prompts", run.modality_prompts,
-                   "prompts with 30 more generations, for MultiModality (papers: 96)")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--judge", options->judge, "space in which the nearest real motion is found")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"evaluator", "retriever"}));
-  command
-      ->add_option("--results", run.results_path,
-                   "JSON Lines, one motion a line; an existing file is continued")
-      ->required();
-  command->callback([options, &program] { evaluate_generation(*options, program); });
 }
 
 }  // namespace remomask::tools

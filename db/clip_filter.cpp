@@ -1,4 +1,4 @@
-#include "search/filter.h"
+#include "db/clip_filter.h"
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ double clip_seconds(const ClipInfo& clip) {
 
 }  // namespace remomask
 
-namespace remomask::search {
+namespace remomask::db {
 
 namespace {
 
@@ -67,12 +67,12 @@ void check_range(const char* what, const char* unit, const std::optional<double>
 }
 
 template <typename HasIt>
-void check_known(const std::vector<db::Clip>& clips, const std::string& what, HasIt has_it) {
+void check_known(const std::vector<Clip>& clips, const std::string& what, HasIt has_it) {
   if (std::any_of(clips.begin(), clips.end(), has_it)) return;
   throw Error("no clip has " + what + "; check how it is written");
 }
 
-void check_filter(const std::vector<db::Clip>& clips, const ClipFilter& filter) {
+void check_filter(const std::vector<Clip>& clips, const ClipFilter& filter) {
   for (const std::string& split : filter.splits) {
     if (split != "train" && split != "val" && split != "test" && split != "none") {
       throw Error("unknown split '" + split + "'; use train, val, test or none");
@@ -81,17 +81,17 @@ void check_filter(const std::vector<db::Clip>& clips, const ClipFilter& filter) 
   check_range("length", " s", filter.min_seconds, filter.max_seconds);
   check_range("speed", " m/s", filter.min_speed, filter.max_speed);
   for (const LabelCondition& condition : filter.labels) {
-    check_known(clips, "a label '" + condition.key + "'", [&](const db::Clip& clip) {
+    check_known(clips, "a label '" + condition.key + "'", [&](const Clip& clip) {
       return find_label(clip.labels, condition.key) != nullptr;
     });
   }
   for (const std::string& tag : filter.tags) {
     check_known(clips, "the tag '" + tag + "'",
-                [&](const db::Clip& clip) { return contains(clip.tags, tag); });
+                [&](const Clip& clip) { return contains(clip.tags, tag); });
   }
   for (const std::string& licence : filter.licences) {
     check_known(clips, "the licence '" + licence + "'",
-                [&](const db::Clip& clip) { return clip.licence == licence; });
+                [&](const Clip& clip) { return clip.licence == licence; });
   }
 }
 
@@ -100,7 +100,7 @@ bool is_within(double value, const std::optional<double>& least,
   return (!least || value >= *least) && (!most || value <= *most);
 }
 
-bool clip_matches(const db::Clip& clip, const ClipFilter& filter) {
+bool clip_matches(const Clip& clip, const ClipFilter& filter) {
   if (!filter.splits.empty() && !contains(filter.splits, clip.split)) return false;
   if (!filter.licences.empty() && !contains(filter.licences, clip.licence)) return false;
   if (!is_within(clip_seconds(clip), filter.min_seconds, filter.max_seconds)) return false;
@@ -127,19 +127,19 @@ LabelCondition parse_label_condition(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-std::vector<int64_t> matching_clips(const db::Database& database, const ClipFilter& filter) {
-  const db::ReadSnapshot snapshot(database);
+std::vector<int64_t> matching_clips(const Database& database, const ClipFilter& filter) {
+  const ReadSnapshot snapshot(database);
   return matching_clips(database, database.clips(), filter);
 }
 
-std::vector<int64_t> matching_clips(const db::Database& database,
-                                    const std::vector<db::Clip>& clips, const ClipFilter& filter) {
+std::vector<int64_t> matching_clips(const Database& database,
+                                    const std::vector<Clip>& clips, const ClipFilter& filter) {
   ClipFilter others = filter;
   others.caption_query.clear();
   std::vector<int64_t> ids = matching_clips(clips, others);
   if (filter.caption_query.empty()) return ids;
   std::vector<int64_t> worded, both;
-  for (const db::CaptionMatch& match : database.match_captions(filter.caption_query)) {
+  for (const CaptionMatch& match : database.match_captions(filter.caption_query)) {
     worded.push_back(match.clip_id);
   }
   std::sort(worded.begin(), worded.end());
@@ -148,15 +148,15 @@ std::vector<int64_t> matching_clips(const db::Database& database,
   return both;
 }
 
-std::vector<int64_t> matching_clips(const std::vector<db::Clip>& clips, const ClipFilter& filter) {
+std::vector<int64_t> matching_clips(const std::vector<Clip>& clips, const ClipFilter& filter) {
   if (!filter.caption_query.empty()) throw Error("a caption query can be asked of a database only");
   check_filter(clips, filter);
   std::vector<int64_t> ids;
-  for (const db::Clip& clip : clips) {
+  for (const Clip& clip : clips) {
     if (clip_matches(clip, filter)) ids.push_back(clip.id);
   }
   std::sort(ids.begin(), ids.end());
   return ids;
 }
 
-}  // namespace remomask::search
+}  // namespace remomask::db

@@ -1,27 +1,28 @@
-#include "nn/preset.h"
+#include "base/preset.h"
 
 #include "remomask/error.h"
 
-namespace remomask::nn {
+namespace remomask {
 
 const std::vector<Preset>& all_presets() {
-  static const std::vector<Preset> presets = {
-      {Size::tiny},   {Size::small},      {Size::base},        {Size::paper},
-      {Size::momask}, {Size::tiny, true}, {Size::small, true}, {Size::base, true}};
+  static const std::vector<Preset> presets = {{ModelSize::tiny},        {ModelSize::small},
+                                              {ModelSize::base},        {ModelSize::paper},
+                                              {ModelSize::momask},      {ModelSize::tiny, true},
+                                              {ModelSize::small, true}, {ModelSize::base, true}};
   return presets;
 }
 
-std::string size_name(Size size) {
+std::string size_name(ModelSize size) {
   switch (size) {
-    case Size::tiny:
+    case ModelSize::tiny:
       return "tiny";
-    case Size::small:
+    case ModelSize::small:
       return "small";
-    case Size::base:
+    case ModelSize::base:
       return "base";
-    case Size::paper:
+    case ModelSize::paper:
       return "paper";
-    case Size::momask:
+    case ModelSize::momask:
       return "momask";
   }
   return "";
@@ -46,4 +47,4 @@ Preset parse_preset(const std::string& name) {
   throw Error("there is no preset \"" + name + "\"; use one of " + known);
 }
 
-}  // namespace remomask::nn
+}  // namespace remomask

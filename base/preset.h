@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-namespace remomask::nn {
+namespace remomask {
 
 /// Sizes that a network can be built in.
-enum class Size {
+enum class ModelSize {
   tiny,   ///< for tests: seconds to train
   small,  ///< for comparisons of many models
   base,   ///< the default: an hour to train on a few CPU cores
@@ -17,7 +17,7 @@ enum class Size {
 /// A named value of the configurations of all networks: a size, and whether the model has MoMask's
 /// design (one row for the whole body, no retrieval) with about as many weights.
 struct Preset {
-  Size size = Size::base;
+  ModelSize size = ModelSize::base;
   bool one_row = false;
 
   bool operator==(const Preset&) const = default;
@@ -28,7 +28,7 @@ const std::vector<Preset>& all_presets();
 
 /// "tiny", "base", "momask", "momask-base", ...
 std::string preset_name(const Preset& preset);
-std::string size_name(Size size);
+std::string size_name(ModelSize size);
 
 /// Reads what preset_name() writes. Throws Error that lists the names for any other one.
 Preset parse_preset(const std::string& name);
@@ -36,4 +36,4 @@ Preset parse_preset(const std::string& name);
 /// The names of all presets.
 std::vector<std::string> preset_names();
 
-}  // namespace remomask::nn
+}  // namespace remomask
