@@ -79,8 +79,8 @@ int main() {
 }
 END
 export PKG_CONFIG_PATH=$libdir/pkgconfig
-[ "$(pkg-config --modversion remomask)" = "$(sed -nE 's/^project\(remomask VERSION ([0-9.]+).*/\1/p' "$root/CMakeLists.txt")" ] ||
-  fail "remomask.pc has another version than the project"
+version=$(sed -nE 's/^#define REMOMASK_VERSION "(.*)"/\1/p' "$prefix/include/remomask/version.h")
+[ "$(pkg-config --modversion remomask)" = "$version" ] || fail "remomask.pc is not of version $version"
 # shellcheck disable=SC2046
 c++ -std=c++20 "$work/waves.cpp" -o "$work/waves" $(pkg-config --cflags --libs remomask)
 LD_LIBRARY_PATH=$libdir "$work/waves" | tee "$work/found"
