@@ -1,24 +1,26 @@
 #!/bin/sh
-# Draws docs/generated.png, the picture of the README, with the shipped model: motions of
-# prompts that are no captions of the training data, under each the retrieved clip that it
-# began as.
+# Draws docs/generated.png, the picture of the README, with the shipped model: motions that no
+# clip of the database shows. A walk whose arms alone were generated again, beside the walk that
+# it was, and four sentences as one motion.
 #   tools/readme_picture.sh [OUTPUT.png]
 set -eu
 cd "$(dirname "$0")/.."
 output=${1:-docs/generated.png}
-remomask=${REMOMASK:-build/release/tools/remomask}
+remomask="${REMOMASK:-build/release/tools/remomask} --quiet"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-set --
-number=0
-for prompt in "someone walks forward, then stops" "a person sits on a chair and stands up again" \
-  "a person waves the left hand"; do
-  number=$((number + 1))
-  motion="$folder/$number.bvh"
-  "$remomask" --quiet generate "$prompt" --seconds 4.4 --seed 3 -o "$motion" >/dev/null
-  clip=$(sed -n 's/.*"followed": "{\\"clip\\":\\"\([^\\]*\)\\".*/\1/p' "$motion.json")
-  "$remomask" --quiet db export models/procedural.sqlite "$folder/clip$number" "$clip" >/dev/null
-  mv "$folder/clip$number/$clip.npy" "$folder/began as $clip.npy"  # the title of its row
-  set -- "$@" "$motion" "$folder/began as $clip.npy"
-done
-"$remomask" --quiet sheet "$@" -o "$output" >/dev/null
+$remomask generate "a person walks forward" --seconds 4.4 --seed 3 -o "$folder/walk.npy" >/dev/null
+$remomask edit "$folder/walk.npy" --parts arms --prompt "someone raises both hands above the head" \
+  --seed 2 --best-of 3 -o "$folder/arms.npy" >/dev/null
+cat >"$folder/day.txt" <<END
+3    a person walks forward
+3    someone waves with the right hand
+3    a person sits down on a chair
+3    a person stands up and walks forward
+END
+$remomask generate --script "$folder/day.txt" --seed 1 --best-of 2 -o "$folder/day.npy" >/dev/null
+$remomask sheet "$folder/walk.npy" "$folder/arms.npy" "$folder/day.npy" --poses 11 \
+  --title "a person walks forward" \
+  --title "the same walk; arms alone: someone raises both hands above the head" \
+  --title "walks forward; waves with the right hand; sits down on a chair; stands up and walks" \
+  -o "$output" >/dev/null
