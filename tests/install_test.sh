@@ -54,6 +54,12 @@ cmake -S "$work/source" -B "$work/examples" -DCMAKE_BUILD_TYPE=Release \
 [ "${library##*.}" != so ] || ! grep -qi torch "$work/examples/CMakeCache.txt" ||
   fail "a user of the shared library must not need libtorch's CMake files"
 cmake --build "$work/examples" -j 2 >"$work/log" || { cat "$work/log"; exit 1; }
+shipped=$prefix/share/remomask
+"$work/examples/sample_search" "$shipped/base.safetensors" "$shipped/procedural.sqlite" \
+  "a person waves the right hand" | tee "$work/found"
+grep -q wav "$work/found"
+(cd "$work" && "$work/examples/sample_generate_with_evidence" "a person waves" motion.bvh)
+grep -q '^Frames: ' "$work/motion.bvh"
 
 # A program by pkg-config.
 cat >"$work/waves.cpp" <<'END'
