@@ -34,7 +34,7 @@ step includes tests/check_includes.sh
 step rooms tools/draw_rooms.sh --check
 step headers tests/check_headers.sh
 # Debian 13 has other versions, with other opinions.
-if command -v clang-format-14 clang-tidy-14 >/dev/null; then
+if command -v clang-format-14 >/dev/null && command -v clang-tidy-14 >/dev/null; then
   step format check_format
   step lint tools/lint.sh
 fi
