@@ -28,6 +28,7 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 file(RELATIVE_PATH pc_prefix
   ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+string(REGEX REPLACE "/$" "" pc_prefix "${pc_prefix}")
 configure_file(cmake/remomask.pc.in ${PROJECT_BINARY_DIR}/remomask.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/remomask.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 

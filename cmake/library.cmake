@@ -18,8 +18,10 @@ if(BUILD_SHARED_LIBS)
   add_library(remomask_library SHARED ${objects})
   target_link_libraries(remomask_library PRIVATE ${libraries})
   set(version_script ${PROJECT_SOURCE_DIR}/cmake/libremomask.map)
-  target_link_options(remomask_library PRIVATE
-    LINKER:--version-script=${version_script} LINKER:--no-undefined)
+  target_link_options(remomask_library PRIVATE LINKER:--version-script=${version_script})
+  if(NOT REMOMASK_SANITIZE)  # whose run time comes with the program
+    target_link_options(remomask_library PRIVATE LINKER:--no-undefined)
+  endif()
   set_target_properties(remomask_library PROPERTIES
     LINK_DEPENDS ${version_script}
     VERSION ${PROJECT_VERSION}

@@ -54,6 +54,12 @@ cmake -S "$work/source" -B "$work/examples" -DCMAKE_BUILD_TYPE=Release \
 [ "${library##*.}" != so ] || ! grep -qi torch "$work/examples/CMakeCache.txt" ||
   fail "a user of the shared library must not need libtorch's CMake files"
 cmake --build "$work/examples" -j 2 >"$work/log" || { cat "$work/log"; exit 1; }
+shipped=$prefix/share/remomask
+"$work/examples/sample_search" "$shipped/base.safetensors" "$shipped/procedural.sqlite" \
+  "a person waves the right hand" | tee "$work/found"
+grep -q wav "$work/found"
+(cd "$work" && "$work/examples/sample_generate_with_evidence" "a person waves" motion.bvh)
+grep -q '^Frames: ' "$work/motion.bvh"
 
 # A program by pkg-config.
 cat >"$work/waves.cpp" <<'END'
@@ -79,8 +85,8 @@ int main() {
 }
 END
 export PKG_CONFIG_PATH=$libdir/pkgconfig
-[ "$(pkg-config --modversion remomask)" = "$(sed -nE 's/^project\(remomask VERSION ([0-9.]+).*/\1/p' "$root/CMakeLists.txt")" ] ||
-  fail "remomask.pc has another version than the project"
+version=$(sed -nE 's/^#define REMOMASK_VERSION "(.*)"/\1/p' "$prefix/include/remomask/version.h")
+[ "$(pkg-config --modversion remomask)" = "$version" ] || fail "remomask.pc is not of version $version"
 # shellcheck disable=SC2046
 c++ -std=c++20 "$work/waves.cpp" -o "$work/waves" $(pkg-config --cflags --libs remomask)
 LD_LIBRARY_PATH=$libdir "$work/waves" | tee "$work/found"

@@ -23,7 +23,7 @@ home_of() {
     motion | skeleton | clip | search | generation) echo motion ;;
     motion_file | rotations) echo formats ;;
     text_to_motion) echo pipeline ;;
-    training) echo training ;;
+    training | remomask) echo training ;;  # remomask.h includes them all
     *) echo base ;;
   esac
 }

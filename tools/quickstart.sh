@@ -1,5 +1,5 @@
 #!/bin/sh
-# From a fresh Debian 12 to a generated motion: installs, builds, generates.
+# From a fresh Debian 12 or 13 to a generated motion: installs, builds, generates.
 set -eu
 cd "$(dirname "$0")/.."
 prompt=${1:-"a person walks forward, then waves with the right hand"}
