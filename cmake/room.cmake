@@ -10,7 +10,9 @@ function(remomask_flags target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(REMOMASK_SANITIZE)
-    target_compile_options(${target} PUBLIC -fsanitize=address,undefined -fno-omit-frame-pointer)
+    # Undefined behaviour is a failure as well, not a line in the log.
+    target_compile_options(${target} PUBLIC
+      -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()

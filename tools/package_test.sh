@@ -18,7 +18,7 @@ tools/build_in_root.sh --bare "$release" "$work/root" sh -c '
   set -eu
   export DEBIAN_FRONTEND=noninteractive
   apt-get -q update
-  apt-get -q install -y /root/remomask.deb
+  apt-get -q install -y --no-install-recommends /root/remomask.deb libopenblas0-pthread
   cd /tmp
   remomask --version
   remomask search "a person waves the right hand" -k 1 | tee found
