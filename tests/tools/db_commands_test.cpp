@@ -63,7 +63,7 @@ TEST_F(DbCommandsTest, BrokenFilesLeaveNoDatabaseBehind) {
 }
 
 TEST_F(DbCommandsTest, TagsAndFiltersChooseClips) {
-  EXPECT_EQ(run_json({"db", "tag", database_, name(0), std::to_string(int(clips_[1]["id"])),
+  EXPECT_EQ(run_json({"db", "tag", database_, name(0), "#" + std::to_string(int(clips_[1]["id"])),
                       "--add", "good", "--add", "new", "--set-label", "mark=7"})["changed"],
             2);
   EXPECT_EQ(count({"--tag", "good"}), 2u);
@@ -98,6 +98,18 @@ TEST_F(DbCommandsTest, TagsAndFiltersChooseClips) {
     EXPECT_EQ(result.output, "");
     EXPECT_NE(result.errors, "");
   }
+}
+
+TEST_F(DbCommandsTest, DigitsAreNamesAndNumbersHaveASign) {
+  const std::string number = std::to_string(int(clips_[1]["id"]));
+  const ProgramResult refused = run_program({"db", "remove", database_, number});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.errors.find("write #" + number + " for clip number " + number),
+            std::string::npos)
+      << refused.errors;
+  EXPECT_EQ(run_json({"db", "show", database_, "#" + number})["clips"][0]["name"], name(1));
+  const ProgramResult removed = run_program({"db", "remove", database_, "#" + number});
+  EXPECT_EQ(removed.output, "removed " + name(1) + "\n1 clip removed from " + database_ + "\n");
 }
 
 TEST_F(DbCommandsTest, RemoveAsksBeforeItTakesSeveral) {

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "base/file.h"
 #include "tests/tools/program_runner.h"
@@ -72,6 +75,82 @@ TEST(UsageTest, BadInputEndsWithOneAndSaysWhatToDo) {
     EXPECT_NE(result.errors.find(broken.expected), std::string::npos) << result.errors;
     EXPECT_EQ(result.output, "") << broken.expected;
   }
+}
+
+TEST(Usage, WrongWordsAreAnsweredWithWhatWasMeant) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"genrate", "a walk"}, "did you mean \"generate\"?"},
+      {{"db", "lst", "x.sqlite"}, "did you mean \"list\"?"},
+      {{"generate", "a walk", "--secnds", "3", "-o", "x.bvh"}, "did you mean --seconds?"},
+      {{"generate", "a", "person", "waves", "-o", "x.bvh"}, "put the sentence in quotes"},
+      {{"search", "walk", "-k", "0"}, "must be greater than 0, not 0"},
+      {{"--threads", "-3", "info", "x.sqlite"}, "must be at least 0, not -3"},
+  };
+  for (const auto& [arguments, expected] : cases) {
+    const ProgramResult result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 2) << expected;
+    EXPECT_NE(result.errors.find(expected), std::string::npos) << result.errors;
+    EXPECT_LT(result.errors.size(), 300u) << result.errors;
+  }
+}
+
+TEST(Usage, ErrorsAreJsonWhereAnswersAre) {
+  const auto error_of = [](const std::vector<std::string>& arguments) {
+    return nlohmann::json::parse(run_program(arguments).output).at("error");
+  };
+  const auto usage = error_of({"--json", "generate", "a walk", "--secnds", "3", "-o", "x.bvh"});
+  EXPECT_EQ(usage.at("code"), 2);
+  EXPECT_EQ(usage.at("kind"), "usage");
+  const auto file = error_of({"--json", "info", "absent.safetensors"});
+  EXPECT_EQ(file.at("code"), 1);
+  EXPECT_EQ(file.at("kind"), "file");
+  EXPECT_EQ(file.at("path"), "absent.safetensors");
+}
+
+TEST(Usage, AFullOutputIsAFailure) {
+  EXPECT_NE(std::system("'" REMOMASK_PROGRAM "' --version >/dev/full 2>/dev/null") |
+                std::system("'" REMOMASK_PROGRAM "' search walk >/dev/full 2>/dev/null"),
+            0);
+}
+
+TEST(Usage, HelpVersionAndMistakesLoadNoNetwork) {
+  for (const char* arguments : {"--version", "--help", "generate --help", "genrate"}) {
+    const std::string command = std::string("LD_DEBUG=files '" REMOMASK_PROGRAM "' ") + arguments +
+                                " 2>&1 | grep -q 'libtorch\\|remomask-core'";
+    EXPECT_NE(std::system(command.c_str()), 0) << arguments;
+  }
+}
+
+TEST(Usage, ShippedFilesComeFromTheChosenFolderOrAreMissed) {
+  const ProgramResult result = run_program({"search", "walk"}, {{"REMOMASK_MODELS", "/nowhere"}});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.errors.find("REMOMASK_MODELS names the folder \"/nowhere\""), std::string::npos)
+      << result.errors;
+}
+
+TEST(Usage, AnInterruptedGenerationEndsSoonWithItsStatus) {
+  const ScratchFolder folder;
+  const ProgramResult result = run_program(
+      {"generate", "a person walks around", "--seconds", "600", "-o", folder.path("long.npy")}, {},
+      /*kill_after_seconds=*/4, SIGINT);
+  EXPECT_EQ(result.exit_code, 130) << result.errors;
+  EXPECT_NE(result.errors.find("stopped"), std::string::npos) << result.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder.path("long.npy")));
+}
+
+TEST(Usage, TheInputIsNotReplacedUnasked) {
+  const ScratchFolder folder;
+  const std::string walk = folder.path("walk.npy");
+  ASSERT_EQ(run_program({"generate", "a person walks", "--seconds", "2", "-o", walk}).exit_code, 0);
+  const std::string before = read_file(walk);
+  const ProgramResult refused = run_program({"convert", walk, walk});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.errors.find("--force"), std::string::npos) << refused.errors;
+  EXPECT_EQ(read_file(walk), before);
+  EXPECT_EQ(run_program({"convert", walk, walk, "--force"}).exit_code, 0);
+  const ProgramResult again =
+      run_program({"generate", "a person walks", "--seconds", "2", "-o", walk});
+  EXPECT_NE(again.errors.find("exists and is replaced"), std::string::npos) << again.errors;
 }
 
 }  // namespace
