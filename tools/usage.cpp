@@ -65,14 +65,16 @@ GivenCommands given_commands(const CLI::App& app, const std::vector<std::string>
     const std::string& word = words[i];
     if (word == "--threads") ++i;  // The one global option with a value.
     if (word.starts_with("-")) continue;
-    const CLI::App& last = *given.chain.back();
-    if (last.get_subcommands({}).empty()) break;
-    const CLI::App* next = last.get_subcommand_no_throw(word);
-    if (next == nullptr) {
+    const auto commands = given.chain.back()->get_subcommands({});
+    if (commands.empty()) break;
+    const auto next = std::find_if(commands.begin(), commands.end(), [&](const CLI::App* command) {
+      return command->get_name() == word;
+    });
+    if (next == commands.end()) {
       given.unknown = word;
       break;
     }
-    given.chain.push_back(next);
+    given.chain.push_back(*next);
   }
   return given;
 }
