@@ -81,7 +81,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::CallForVersion& version) {
     return app.exit(version);
   } catch (const CLI::ParseError& error) {
-    const std::string hint = usage_hint(app, argc, argv);
+    const std::string hint =
+        usage_hint(app, argc, argv, dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr);
     return fail(program, {kExitUsage, "usage", hint.empty() ? error.what() : hint});
   } catch (const Interrupted& error) {
     return fail(program, {kExitInterrupted, "interrupted", error.what()});

@@ -95,7 +95,8 @@ CLI::Validator limited_number(bool zero_too) {
 
 }  // namespace
 
-std::string usage_hint(const CLI::App& app, int argc, const char* const* argv) {
+std::string usage_hint(const CLI::App& app, int argc, const char* const* argv,
+                       bool too_many_words) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   const GivenCommands given = given_commands(app, words);
   if (!given.unknown.empty()) {
@@ -113,7 +114,7 @@ std::string usage_hint(const CLI::App& app, int argc, const char* const* argv) {
   }
   const std::string& command = given.chain.back()->get_name();
   const bool takes_sentence = command == "generate" || command == "search" || command == "edit";
-  if (takes_sentence && given.chain.back()->remaining_size() > 0) {
+  if (takes_sentence && too_many_words) {
     return fmt::format("put the sentence in quotes: remomask {} \"a person waves\"", command);
   }
   return "";

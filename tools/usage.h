@@ -7,7 +7,8 @@ namespace remomask::tools {
 
 /// What a person probably meant who used the program wrongly: the nearest command or option, or
 /// quotes around a sentence. Empty if nothing is near.
-std::string usage_hint(const CLI::App& app, int argc, const char* const* argv);
+/// `too_many_words`: the arguments had words that belong to nothing.
+std::string usage_hint(const CLI::App& app, int argc, const char* const* argv, bool too_many_words);
 
 /// Validators whose messages name the number and the limit as people write them.
 CLI::Validator positive_number();
