@@ -46,9 +46,8 @@ class FileBytes {
   explicit FileBytes(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
     std::error_code failure;
     size_ = std::filesystem::file_size(path, failure);
-    if (!stream_ || failure) {
-      throw FileError(path, 0, "cannot be read; check that it is a file and may be opened");
-    }
+    if (failure) throw FileError(path, 0, "cannot open: " + failure.message());
+    if (!stream_) throw FileError(path, 0, "cannot open; check its permissions");
   }
   uint64_t size() const { return size_; }
 
