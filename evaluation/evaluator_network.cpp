@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kSlope = 0.2, kMovementDropout = 0.2;
 /// Columns that hardly move are not blown up to unit size.
-constexpr double kLeastSpread = 1e-4;
+constexpr double kMinSpread = 1e-4;
 
 torch::nn::LeakyReLU leaky() {
   return torch::nn::LeakyReLU(torch::nn::LeakyReLUOptions().negative_slope(kSlope));
@@ -187,7 +187,7 @@ void EvaluatorNetworkImpl::set_statistics(const std::vector<const motion::Featur
   for (size_t group = 0; group + 1 < edges.size(); ++group) {
     const bool weighted = edges[group] < positions || edges[group] == contacts;
     at::Tensor part = deviation.slice(0, edges[group], edges[group + 1]);
-    part.fill_(std::max(part.mean().item<double>(), kLeastSpread) /
+    part.fill_(std::max(part.mean().item<double>(), kMinSpread) /
                (weighted ? config_.root_weight : 1.0));
   }
   mean_.copy_(mean);

@@ -8,10 +8,11 @@
 
 #include "base/file.h"
 #include "base/random.h"
+#include "db/clip_filter.h"
 #include "db/training_set.h"
 #include "evaluation/side_rule.h"
+#include "nn/tensor_values.h"
 #include "remomask/error.h"
-#include "db/clip_filter.h"
 
 namespace remomask::evaluation {
 
@@ -153,8 +154,7 @@ JudgedMotion JudgeGallery::judge(const LabelPrompt& prompt, const Motion& motion
   const Skeleton& skeleton = humanml_skeleton();
   result.physical = pipeline::measure_physical(motion, skeleton);
   if (!result.physical.finite) return result;  // wrong by any measure
-  const at::Tensor embedding = evaluator.embed_motion(motion).contiguous();
-  result.embedding = {embedding.data_ptr<float>(), embedding.data_ptr<float>() + embedding.numel()};
+  result.embedding = nn::float_vector(evaluator.embed_motion(motion));
   result.shown_side = shown_side_name(prompt.text, motion, skeleton);
   std::vector<int64_t> allowed = ids_;
   if (exclude_own_group) {

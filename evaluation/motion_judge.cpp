@@ -9,6 +9,7 @@
 #include "db/training_set.h"
 #include "evaluation/evaluator_network.h"
 #include "evaluation/tokenizer_metrics.h"
+#include "nn/tensor_values.h"
 #include "remomask/error.h"
 
 namespace remomask::evaluation {
@@ -32,8 +33,7 @@ class EvaluatorJudge : public MotionJudge {
   const std::vector<int64_t>& clip_ids() const override { return clip_ids_; }
 
   std::vector<float> embed(const Motion& motion) const override {
-    const at::Tensor vector = evaluator_.embed_motion(motion).contiguous();
-    return {vector.data_ptr<float>(), vector.data_ptr<float>() + vector.numel()};
+    return nn::float_vector(evaluator_.embed_motion(motion));
   }
 
   std::optional<NearMotion> nearest(const std::vector<float>& vector,

@@ -16,8 +16,8 @@ namespace remomask::evaluation {
 
 namespace {
 
-constexpr double kLeastPathRatio = 1.1;
-constexpr double kLeastTurn = 15 * std::numbers::pi / 180;
+constexpr double kMinPathRatio = 1.1;
+constexpr double kMinTurn = 15 * std::numbers::pi / 180;
 
 bool is_form_of(const std::string& word, const std::set<std::string>& listed) {
   const auto forms = base_forms(word);
@@ -95,12 +95,12 @@ std::optional<AskedSide> asked_side(const std::string& caption) {
 std::optional<Side> shown_side(const Motion& motion, const Skeleton& skeleton, SideKind kind) {
   if (kind == SideKind::turn) {
     const double change = heading_change(motion, skeleton);
-    if (std::abs(change) < kLeastTurn) return std::nullopt;
+    if (std::abs(change) < kMinTurn) return std::nullopt;
     return change > 0 ? Side::left : Side::right;
   }
   const double left = wrist_path(motion, skeleton, "left"),
                right = wrist_path(motion, skeleton, "right");
-  if (std::max(left, right) <= kLeastPathRatio * std::min(left, right)) return std::nullopt;
+  if (std::max(left, right) <= kMinPathRatio * std::min(left, right)) return std::nullopt;
   return left > right ? Side::left : Side::right;
 }
 

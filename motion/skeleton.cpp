@@ -1,5 +1,6 @@
 #include "remomask/skeleton.h"
 
+#include "base/time.h"
 #include "remomask/error.h"
 
 namespace remomask {
@@ -42,7 +43,7 @@ Skeleton make_humanml_skeleton() {
   s.left_feet = {7, 10};
   s.right_feet = {8, 11};
   s.contact_threshold = 0.002;
-  s.fps = 20;
+  s.fps = kFps;
   return s;
 }
 

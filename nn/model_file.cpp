@@ -2,6 +2,9 @@
 
 #include <torch/nn/module.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "base/hash.h"
 #include "remomask/error.h"
 
@@ -10,26 +13,16 @@ namespace remomask::nn {
 namespace {
 constexpr int kModelVersion = 1;
 constexpr const char* kModelFormat = "remomask-model";
-}  // namespace
 
-void save_model(const std::string& path, const std::vector<ModelStage>& stages, bool half) {
-  TensorMap tensors;
-  nlohmann::json configs = nlohmann::json::object();
-  for (const ModelStage& stage : stages) {
-    configs[stage.kind] = stage.config;
-    for (const auto& [name, tensor] : stage.tensors) {
-      const bool shrink = half && tensor.scalar_type() == at::kFloat;
-      tensors.emplace(stage.kind + "/" + name, shrink ? tensor.to(at::kHalf) : tensor);
-    }
-  }
-  save_safetensors(path, tensors,
-                   {{"format", kModelFormat},
-                    {"version", std::to_string(kModelVersion)},
-                    {"stages", configs.dump()}});
+std::string kind_of(const std::string& tensor_name) {
+  return tensor_name.substr(0, tensor_name.find('/'));
 }
 
-std::map<std::string, ModelStage> load_model(const std::string& path) {
-  TensorFile file = load_safetensors(path);
+/// Every stage with its config, and with its tensors where `wanted` accepts its kind.
+std::map<std::string, ModelStage> read_stages(
+    const std::string& path, const std::function<bool(const std::string& kind)>& wanted) {
+  TensorFile file =
+      load_safetensors(path, [&](const std::string& name) { return wanted(kind_of(name)); });
   if (file.metadata["format"] != kModelFormat) {
     throw FileError(path, 0, "is a safetensors file, but not a remomask model");
   }
@@ -50,7 +43,7 @@ std::map<std::string, ModelStage> load_model(const std::string& path) {
   }
   for (const auto& [name, tensor] : file.tensors) {
     const size_t slash = name.find('/');
-    const auto stage = stages.find(name.substr(0, slash));
+    const auto stage = stages.find(kind_of(name));
     if (slash == std::string::npos || stage == stages.end()) {
       throw FileError(path, 0, "tensor \"" + name + "\" belongs to no stage");
     }
@@ -60,18 +53,51 @@ std::map<std::string, ModelStage> load_model(const std::string& path) {
   return stages;
 }
 
-ModelStage load_stage(const std::string& path, const std::string& kind) {
-  auto stages = load_model(path);
-  const auto found = stages.find(kind);
-  if (found == stages.end()) {
-    std::string held;
-    for (const auto& [name, stage] : stages) held += (held.empty() ? "" : ", ") + name;
-    throw FileError(path, 0,
-                    "holds no " + kind + " (it holds: " + held +
-                        "); train it first, or "
-                        "name another model");
+}  // namespace
+
+void save_model(const std::string& path, const std::vector<ModelStage>& stages, bool half) {
+  TensorMap tensors;
+  nlohmann::json configs = nlohmann::json::object();
+  for (const ModelStage& stage : stages) {
+    configs[stage.kind] = stage.config;
+    for (const auto& [name, tensor] : stage.tensors) {
+      const bool shrink = half && tensor.scalar_type() == at::kFloat;
+      tensors.emplace(stage.kind + "/" + name, shrink ? tensor.to(at::kHalf) : tensor);
+    }
   }
-  return found->second;
+  save_safetensors(path, tensors,
+                   {{"format", kModelFormat},
+                    {"version", std::to_string(kModelVersion)},
+                    {"stages", configs.dump()}});
+}
+
+std::map<std::string, ModelStage> load_model(const std::string& path) {
+  return read_stages(path, [](const std::string&) { return true; });
+}
+
+std::map<std::string, ModelStage> load_stages(const std::string& path,
+                                              const std::vector<std::string>& kinds) {
+  const auto stages = read_stages(path, [&](const std::string& kind) {
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  });
+  std::map<std::string, ModelStage> found;
+  for (const std::string& kind : kinds) found.emplace(kind, require_stage(stages, kind, path));
+  return found;
+}
+
+ModelStage load_stage(const std::string& path, const std::string& kind) {
+  return load_stages(path, {kind}).at(kind);
+}
+
+const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
+                                const std::string& kind, const std::string& path) {
+  const auto found = stages.find(kind);
+  if (found != stages.end()) return found->second;
+  std::string held;
+  for (const auto& [name, stage] : stages) held += (held.empty() ? "" : ", ") + name;
+  throw FileError(
+      path, 0,
+      "holds no " + kind + " (it holds: " + held + "); train it first, or name another model");
 }
 
 std::string stage_hash(const ModelStage& stage) {

@@ -28,8 +28,17 @@ void save_model(const std::string& path, const std::vector<ModelStage>& stages, 
 /// remomask model or was made by a newer version.
 std::map<std::string, ModelStage> load_model(const std::string& path);
 
-/// One stage; throws FileError that names what the file does hold.
+/// The stages named in `kinds`. The tensors of the others are not read: a search needs a fraction
+/// of the file. Throws as load_model() and require_stage() do.
+std::map<std::string, ModelStage> load_stages(const std::string& path,
+                                              const std::vector<std::string>& kinds);
+
+/// load_stages() for one.
 ModelStage load_stage(const std::string& path, const std::string& kind);
+
+/// The stage of this kind. Throws FileError that names what the model at `path` does hold.
+const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
+                                const std::string& kind, const std::string& path);
 
 /// Identity of the weights and the config.
 std::string stage_hash(const ModelStage& stage);

@@ -3,6 +3,8 @@
 #include <ATen/Functions.h>
 
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -36,7 +38,30 @@ at::ScalarType type_of(const std::string& path, const std::string& name) {
   throw FileError(path, 0, "tensor type \"" + name + "\" is not supported");
 }
 
-constexpr uint64_t kMostHeaderBytes = 64u << 20;
+constexpr uint64_t kMaxHeaderBytes = 64u << 20;
+
+/// Reads parts of a file, so that one stage of a large model costs only its own bytes.
+class FileBytes {
+ public:
+  explicit FileBytes(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
+    std::error_code failure;
+    size_ = std::filesystem::file_size(path, failure);
+    if (failure) throw FileError(path, 0, "cannot open: " + failure.message());
+    if (!stream_) throw FileError(path, 0, "cannot open; check its permissions");
+  }
+  uint64_t size() const { return size_; }
+
+  void read(uint64_t offset, uint64_t count, void* target) {
+    stream_.seekg(static_cast<std::streamoff>(offset));
+    stream_.read(static_cast<char*>(target), static_cast<std::streamsize>(count));
+    if (!stream_) throw FileError(path_, 0, "cannot be read to its end");
+  }
+
+ private:
+  std::string path_;
+  std::ifstream stream_;
+  uint64_t size_ = 0;
+};
 
 }  // namespace
 
@@ -68,19 +93,22 @@ void save_safetensors(const std::string& path, const TensorMap& tensors,
   write_file_atomically(path, content);
 }
 
-TensorFile load_safetensors(const std::string& path) {
-  const std::string content = read_file(path);
-  if (content.size() < 8) throw FileError(path, 0, "too short for a safetensors file");
+TensorFile load_safetensors(const std::string& path,
+                            const std::function<bool(const std::string& name)>& wanted) {
+  FileBytes source(path);
+  if (source.size() < 8) throw FileError(path, 0, "too short for a safetensors file");
   uint64_t head_bytes = 0;
-  std::memcpy(&head_bytes, content.data(), 8);
-  if (head_bytes > kMostHeaderBytes || head_bytes > content.size() - 8) {
+  source.read(0, 8, &head_bytes);
+  if (head_bytes > kMaxHeaderBytes || head_bytes > source.size() - 8) {
     throw FileError(path, 0, "not a safetensors file, or truncated");
   }
+  std::string head(head_bytes, '\0');
+  source.read(8, head_bytes, head.data());
   TensorFile file;
-  const char* data = content.data() + 8 + head_bytes;
-  const uint64_t data_bytes = content.size() - 8 - head_bytes;
+  const uint64_t data_start = 8 + head_bytes;
+  const uint64_t data_bytes = source.size() - data_start;
   try {
-    const auto header = nlohmann::json::parse(content.data() + 8, data);
+    const auto header = nlohmann::json::parse(head);
     for (const auto& [name, entry] : header.items()) {
       if (name == "__metadata__") {
         file.metadata = entry.get<std::map<std::string, std::string>>();
@@ -101,8 +129,9 @@ TensorFile load_safetensors(const std::string& path) {
           range[1] - range[0] != bytes) {
         throw FileError(path, 0, "tensor \"" + name + "\" lies outside the file (truncated?)");
       }
+      if (wanted && !wanted(name)) continue;
       at::Tensor tensor = at::empty(shape, at::TensorOptions().dtype(type));
-      if (bytes > 0) std::memcpy(tensor.data_ptr(), data + range[0], bytes);
+      if (bytes > 0) source.read(data_start + range[0], bytes, tensor.data_ptr());
       file.tensors.emplace(name, tensor);
     }
   } catch (const nlohmann::json::exception& error) {

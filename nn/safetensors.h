@@ -2,6 +2,7 @@
 
 #include <ATen/core/Tensor.h>
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -20,8 +21,10 @@ struct TensorFile {
 void save_safetensors(const std::string& path, const TensorMap& tensors,
                       const std::map<std::string, std::string>& metadata);
 
-/// Reads one. Every offset is checked; throws FileError for a truncated,
-/// overlapping or foreign file. Nothing in the file is ever executed.
-TensorFile load_safetensors(const std::string& path);
+/// Reads a file: the whole header, and the data of the tensors whose names `wanted` accepts
+/// (without it, of all). Every offset is checked, those of unwanted tensors too; throws FileError
+/// for a truncated or foreign file. Nothing in the file is ever executed.
+TensorFile load_safetensors(const std::string& path,
+                            const std::function<bool(const std::string& name)>& wanted = {});
 
 }  // namespace remomask::nn

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "motion/features.h"
+#include "nn/tensor_values.h"
 #include "remomask/error.h"
 #include "remomask/skeleton.h"
 #include "retriever/projection.h"
@@ -17,13 +18,8 @@ namespace remomask::retriever {
 
 namespace {
 
-constexpr int kLeastFramesToEmbed = 4;
+constexpr int kMinFramesToEmbed = 4;
 constexpr size_t kEmbeddingBatch = 32;
-
-std::vector<float> float_vector(const at::Tensor& tensor) {
-  const at::Tensor flat = tensor.contiguous();
-  return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
-}
 
 /// Many clips share captions: each is encoded once.
 class CaptionVectors {
@@ -43,7 +39,7 @@ class CaptionVectors {
       vectors.push_back(known->second);
     }
     if (vectors.empty()) return {};
-    return float_vector(unit_rows(torch::stack(vectors).mean(0)));
+    return nn::float_vector(unit_rows(torch::stack(vectors).mean(0)));
   }
 
  private:
@@ -68,7 +64,7 @@ std::vector<db::Clip> clips_to_embed(const db::Database& database,
   if (static_cast<int64_t>(stored.size()) == database.clip_count()) return {};
   std::vector<db::Clip> clips = database.clips();
   std::erase_if(clips, [&](const db::Clip& clip) {
-    return clip.frames < kLeastFramesToEmbed ||
+    return clip.frames < kMinFramesToEmbed ||
            std::binary_search(stored.begin(), stored.end(), clip.id);
   });
   return clips;
@@ -96,8 +92,8 @@ int64_t embed_database(db::Database& database, const Retriever& retriever, const
     std::vector<db::ClipEmbedding> embeddings;
     for (size_t c = first; c < last; ++c) {
       const auto row = static_cast<int64_t>(c - first);
-      embeddings.push_back({clips[c].id, float_vector(motion.global[row]),
-                            float_vector(motion.parts[row].flatten()),
+      embeddings.push_back({clips[c].id, nn::float_vector(motion.global[row]),
+                            nn::float_vector(motion.parts[row].flatten()),
                             captions.mean(clips[c].captions)});
     }
     database.add_embeddings(retriever.hash(), embeddings);

@@ -14,11 +14,11 @@ namespace remomask::retriever {
 
 namespace {
 
-constexpr int kLeastFrames = 4;
+constexpr int kMinFrames = 4;
 /// Normalised features beyond this many deviations are glitches.
 constexpr float kLargestDeviation = 8;
 /// Channels that hardly move (m, m/frame, rotation) are not blown up to unit size.
-constexpr double kLeastDeviation = 2e-3;
+constexpr double kMinDeviation = 2e-3;
 
 /// x [G, M, a] through G linear layers [G, a, b], [G, 1, b].
 at::Tensor grouped_linear(const at::Tensor& x, const at::Tensor& weight, const at::Tensor& bias) {
@@ -74,7 +74,7 @@ MotionCrop random_crop(const motion::Features& features, double least_share, dou
                        int64_t patch, CounterRandom& random) {
   const double share = random.uniform(least_share, 1.0);
   const int frames = std::clamp(static_cast<int>(std::lround(share * features.frames)),
-                                std::min(kLeastFrames, features.frames), features.frames);
+                                std::min(kMinFrames, features.frames), features.frames);
   MotionCrop crop{&features, 0, frames, {}};
   crop.first = static_cast<int>(random.below(static_cast<size_t>(features.frames - frames) + 1));
   const int64_t patches = (frames + patch - 1) / patch;
@@ -144,7 +144,7 @@ void MotionEncoder::set_statistics(const std::vector<const motion::Features*>& t
     const double deviation = std::sqrt(std::max(0.0, squares[c] / count - mean * mean));
     mean_.data_ptr<float>()[c] = static_cast<float>(mean);
     inverse_deviation_.data_ptr<float>()[c] =
-        static_cast<float>(1 / std::max(deviation, kLeastDeviation));
+        static_cast<float>(1 / std::max(deviation, kMinDeviation));
   }
 }
 
@@ -159,7 +159,7 @@ PatchBatch MotionEncoder::patches(const std::vector<MotionCrop>& crops) const {
                   " feature columns, the retriever wants " + std::to_string(dimension) +
                   "; use motions of the skeleton that it was trained on");
     }
-    if (crop.frames < kLeastFrames) {
+    if (crop.frames < kMinFrames) {
       throw Error("a motion of " + std::to_string(crop.frames) +
                   " frames is too short for the retriever; it needs at least 4");
     }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "nn/tensor_values.h"
 #include "remomask/error.h"
 
 namespace remomask::search {
@@ -137,12 +138,11 @@ std::vector<Moment> best_moments(const at::Tensor& query, const std::vector<Mome
     throw Error("each moment needs its own vector");
   }
   if (windows.empty()) return {};
-  const at::Tensor cosines = torch::mv(vectors, query).contiguous();
+  const at::Tensor cosines = torch::mv(vectors, query);
   if (!torch::isfinite(cosines).all().item<bool>()) {
     throw Error("the similarities are not finite; the retriever is broken, train it again");
   }
-  const std::vector<double> similarity = frame_similarities(
-      windows, {cosines.data_ptr<float>(), cosines.data_ptr<float>() + cosines.numel()});
+  const std::vector<double> similarity = frame_similarities(windows, nn::float_vector(cosines));
   const int shortest = *std::min_element(options.lengths.begin(), options.lengths.end());
   std::vector<double> curve = similarity;
   std::vector<Moment> moments;

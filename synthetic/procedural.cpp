@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "base/random.h"
+#include "base/time.h"
 #include "motion/canonical.h"
 #include "remomask/error.h"
 #include "synthetic/procedural_captions.h"
@@ -40,7 +41,7 @@ void individualize(Poses& poses, uint64_t variation) {
   const SmoothNoise trunk(random), side(random), head(random), gaze(random);
   const SmoothNoise arms[2] = {SmoothNoise(random), SmoothNoise(random)};
   for (size_t f = 0; f < poses.size(); ++f) {
-    const double t = static_cast<double>(f) / 20;
+    const double t = seconds_of(f);
     BodyPose& pose = poses[f];
     pose.nod += nod + 1.5 * head(t);
     pose.look += 2 * gaze(t);

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/time.h"
+
 namespace remomask::synthetic {
 
 namespace {
 
-constexpr double kPathRate = 400;  // samples a second of the integrated path
-constexpr double kGaitFps = 20;
+constexpr double kPathRate = 400;   // samples a second of the integrated path
 constexpr double kToeAhead = 0.10;  // of the pelvis, of a foot in the middle of its stance
 constexpr double kToeOut = 7;       // degrees
 
@@ -220,8 +221,9 @@ double last_landing(const GaitPlan& plan) {
 std::vector<BodyPose> walk_poses(const GaitPlan& plan) {
   const Walker walker(plan);
   std::vector<BodyPose> poses;
-  const int frames = static_cast<int>(std::lround(plan.duration * kGaitFps));
-  for (int f = 0; f < frames; ++f) poses.push_back(walker.pose_at(f / kGaitFps));
+  const int frames = frames_in(plan.duration);
+  for (int f = 0; f < frames; ++f)
+    poses.push_back(walker.pose_at(seconds_of(static_cast<size_t>(f))));
   return poses;
 }
 

@@ -11,7 +11,7 @@ namespace remomask::synthetic {
 /// One kind of made motion: how it is built, what may be chosen, how it is said.
 struct ProceduralKind {
   std::string name;
-  std::string side;  ///< "left", "right" or empty
+  std::string side = {};  ///< "left", "right" or empty
   std::function<Poses(const ProceduralParameters&)> build;
   std::vector<std::string> phrases;      ///< for write_captions
   std::vector<std::string> actions;      ///< labels

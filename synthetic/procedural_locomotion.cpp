@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/time.h"
 #include "synthetic/procedural_actions.h"
 #include "synthetic/procedural_gait.h"
 
@@ -183,7 +184,7 @@ Poses make_gait(const ProceduralParameters& p, GaitKind kind, ActionSide which) 
   };
   Poses poses = walk_poses(plan);
   for (size_t f = 0; f < poses.size(); ++f) {
-    const double t = static_cast<double>(f) / 20, active = ramp(t);
+    const double t = seconds_of(f), active = ramp(t);
     BodyPose& pose = poses[f];
     if (crouch > 0) crouch_trunk(pose, active);
     if (careful > 0) lift_arms_for_sneaking(pose, active);
@@ -204,8 +205,8 @@ Poses make_gait(const ProceduralParameters& p, GaitKind kind, ActionSide which) 
                            kind != GaitKind::stop && kind != GaitKind::turn_after &&
                            kind != GaitKind::wave_after;  // the others tell a whole story
   if (!p.from_stand && steady_gait) {
-    const int first = static_cast<int>(std::ceil((ramp.from + ramp.ramp) * 20));
-    const int last = static_cast<int>((ramp.to - ramp.ramp) * 20);
+    const int first = static_cast<int>(std::ceil((ramp.from + ramp.ramp) * kFps));
+    const int last = static_cast<int>((ramp.to - ramp.ramp) * kFps);
     if (last - first >= 40) return Poses(poses.begin() + first, poses.begin() + last);
   }
   return poses;
@@ -230,7 +231,7 @@ Poses make_turn(const ProceduralParameters& p, ActionSide which, double degrees)
   Poses poses = walk_poses(plan);
   for (size_t f = 0; f < poses.size(); ++f) {
     // The head leads.
-    const double t = static_cast<double>(f) / 20;
+    const double t = seconds_of(f);
     poses[f].look += s * 22 * pulse(t, 0.2, ramp.to - 0.1, 0.6);
     poses[f].twist += s * -7 * pulse(t, 0.3, ramp.to, 0.6);
   }

@@ -1,21 +1,17 @@
 #pragma once
 
-#include <cmath>
 #include <vector>
 
+#include "base/time.h"
 #include "synthetic/procedural_gait.h"
 
 namespace remomask::synthetic {
 
-inline constexpr double kProceduralFps = 20;
-
 /// Poses of a relaxed stand, each changed by `shape(time, pose)`.
 template <class Shape>
 std::vector<BodyPose> make_poses(double duration, Shape&& shape) {
-  std::vector<BodyPose> poses(static_cast<size_t>(std::lround(duration * kProceduralFps)),
-                              standing_pose());
-  for (size_t f = 0; f < poses.size(); ++f)
-    shape(static_cast<double>(f) / kProceduralFps, poses[f]);
+  std::vector<BodyPose> poses(static_cast<size_t>(frames_in(duration)), standing_pose());
+  for (size_t f = 0; f < poses.size(); ++f) shape(seconds_of(f), poses[f]);
   return poses;
 }
 

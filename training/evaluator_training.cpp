@@ -168,7 +168,7 @@ class PairSource {
 
  private:
   evaluation::EvaluatorCrop crop(const motion::Features& features, CounterRandom& random) const {
-    const auto share = random.uniform(options_.least_crop, 1);
+    const auto share = random.uniform(options_.min_crop, 1);
     const int frames = std::max(static_cast<int>(evaluation::kFramesPerMovement),
                                 static_cast<int>(share * features.frames));
     const auto starts = static_cast<size_t>(features.frames - frames + 1);
@@ -225,7 +225,7 @@ nlohmann::json evaluator_run_identity(const evaluation::EvaluatorConfig& config,
           {"batch", options.batch},
           {"margin", options.margin},
           {"shifts", options.shifts},
-          {"least_crop", options.least_crop},
+          {"least_crop", options.min_crop},  // the key of the files there are: it is hashed
           {"word_drop", options.word_drop},
           {"validation_every", options.validation_every}};
 }

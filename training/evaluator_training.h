@@ -20,8 +20,8 @@ struct EvaluatorTrainingOptions {
   /// Random cyclic shifts of a batch whose pairs are mismatches, each different
   /// and none 0; at least batch - 1: all pairs.
   int64_t shifts = 63;
-  double least_crop = 0.9;  ///< shortest random crop, share of the clip
-  double word_drop = 0.1;   ///< share of the words read as unknown
+  double min_crop = 0.9;   ///< shortest random crop, share of the clip
+  double word_drop = 0.1;  ///< share of the words read as unknown
   int64_t validation_every = 100;
   /// Defaults for a network of this size.
   explicit EvaluatorTrainingOptions(ModelSize size = ModelSize::base);

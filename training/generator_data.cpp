@@ -13,12 +13,12 @@ namespace remomask::training {
 
 namespace {
 
-constexpr int kLeastFrames = 8;
+constexpr int kMinFrames = 8;
 constexpr size_t kTextBlock = 256;
 constexpr int kSecondOffset = 2;
 
 bool is_usable(const db::TrainingClip& clip) {
-  return !clip.captions.empty() && clip.features.frames >= kLeastFrames;
+  return !clip.captions.empty() && clip.features.frames >= kMinFrames;
 }
 
 motion::Features rows_from(const motion::Features& features, int first) {
@@ -181,7 +181,7 @@ GeneratorData prepare_generator_data(const std::vector<db::TrainingClip>& train,
   const auto train_clips = usable(train), val_clips = usable(val);
   if (train_clips.empty()) {
     throw Error("training the generator: no training clip has a caption and at least " +
-                std::to_string(kLeastFrames) + " frames; import motions with texts first");
+                std::to_string(kMinFrames) + " frames; import motions with texts first");
   }
   GeneratorData data;
   data.rows = tokenizer.config().rows;

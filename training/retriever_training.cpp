@@ -60,8 +60,8 @@ class BatchSource {
     for (const size_t index : chosen) {
       const db::TrainingClip& clip = clips_[index];
       captions.push_back(clip.captions[random.below(clip.captions.size())]);
-      online.push_back(retriever::random_crop(clip.features, options_.least_crop,
-                                              options_.patch_keep, config_.patch, random));
+      online.push_back(retriever::random_crop(clip.features, options_.min_crop, options_.patch_keep,
+                                              config_.patch, random));
       whole.push_back({&clip.features, online.back().first, online.back().frames, {}});
       groups.push_back(clip.group);
       texts.push_back(text_identity(text::normalise_caption(captions.back())));
@@ -120,7 +120,7 @@ nlohmann::json options_document(const RetrieverTrainingOptions& options) {
           {"momentum", options.momentum},
           {"temperature", options.temperature},
           {"part_weight", options.part_weight},
-          {"least_crop", options.least_crop},
+          {"least_crop", options.min_crop},  // the key of the files there are: it is hashed
           {"patch_keep", options.patch_keep},
           {"word_drop", options.word_drop},
           {"same_meaning_weight", options.same_meaning_weight}};

@@ -19,7 +19,7 @@ struct RetrieverTrainingOptions {
   double momentum = 0.99;
   double temperature = 0.07;  ///< at the start; it is learnt
   double part_weight = 0.1;   ///< of the part-level terms
-  double least_crop = 0.7;    ///< shortest random crop, share of the clip
+  double min_crop = 0.7;      ///< shortest random crop, share of the clip
   double patch_keep = 0.5;    ///< share of the patches that the online encoder sees
   double word_drop = 0.1;     ///< share of the words hidden from the online text tower
   /// What a clip weighs as a negative of another one whose labels say the same

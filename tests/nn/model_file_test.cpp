@@ -60,6 +60,18 @@ TEST_F(ModelFileTest, MissingStageNamesWhatIsThere) {
   }
 }
 
+TEST_F(ModelFileTest, StagesAreReadAlone) {
+  const nn::ModelStage a = stage("tokenizer"), b = stage("masked"), c = stage("residual");
+  nn::save_model(path_, {a, b, c});
+  const auto some = nn::load_stages(path_, {"residual", "tokenizer"});
+  ASSERT_EQ(some.size(), 2u);
+  EXPECT_EQ(nn::stage_hash(some.at("tokenizer")), nn::stage_hash(a));
+  EXPECT_EQ(nn::stage_hash(some.at("residual")), nn::stage_hash(c));
+  EXPECT_EQ(nn::stage_hash(nn::load_stage(path_, "masked")), nn::stage_hash(b));
+  EXPECT_THROW(nn::load_stages(path_, {"masked", "retriever"}), FileError);
+  EXPECT_THROW(nn::require_stage(some, "masked", path_), FileError);
+}
+
 TEST_F(ModelFileTest, BrokenFilesAreRefused) {
   nn::save_model(path_, {stage("tokenizer")});
   const std::string good = read_file(path_);
@@ -77,6 +89,7 @@ TEST_F(ModelFileTest, BrokenFilesAreRefused) {
   for (size_t i = 0; i < broken.size(); ++i) {
     write_file_atomically(path_, broken[i]);
     EXPECT_THROW(nn::load_model(path_), FileError) << "case " << i;
+    EXPECT_THROW(nn::load_stage(path_, "tokenizer"), FileError) << "case " << i;
   }
 }
 
