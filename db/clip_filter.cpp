@@ -132,8 +132,8 @@ std::vector<int64_t> matching_clips(const Database& database, const ClipFilter& 
   return matching_clips(database, database.clips(), filter);
 }
 
-std::vector<int64_t> matching_clips(const Database& database,
-                                    const std::vector<Clip>& clips, const ClipFilter& filter) {
+std::vector<int64_t> matching_clips(const Database& database, const std::vector<Clip>& clips,
+                                    const ClipFilter& filter) {
   ClipFilter others = filter;
   others.caption_query.clear();
   std::vector<int64_t> ids = matching_clips(clips, others);

@@ -20,8 +20,8 @@ LabelCondition parse_label_condition(const std::string& text);
 std::vector<int64_t> matching_clips(const Database& database, const ClipFilter& filter);
 
 /// The same with clips that were read from that state of the database before.
-std::vector<int64_t> matching_clips(const Database& database,
-                                    const std::vector<Clip>& clips, const ClipFilter& filter);
+std::vector<int64_t> matching_clips(const Database& database, const std::vector<Clip>& clips,
+                                    const ClipFilter& filter);
 
 /// The same among clips of any origin. A caption query needs the
 /// database: throws Error when there is one.

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "db/transaction.h"
 #include "remomask/error.h"
 
 namespace remomask::db {
@@ -212,18 +213,13 @@ MergeReport merge_database(Database& target, const Database& other, const Monito
     throw Error(target.path() + ": cannot be merged with itself; name another database");
   }
   const ReadSnapshot snapshot(other);
-  target.begin();
-  try {
-    Merger merger(target, other);
-    merger.store_clips(monitor);
-    merger.store_notes();
-    merger.store_embeddings();
-    target.commit();
-    return std::move(merger).report();
-  } catch (...) {
-    target.rollback();
-    throw;
-  }
+  Transaction transaction(target);
+  Merger merger(target, other);
+  merger.store_clips(monitor);
+  merger.store_notes();
+  merger.store_embeddings();
+  transaction.commit();
+  return std::move(merger).report();
 }
 
 }  // namespace remomask::db

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "db/transaction.h"
 #include "exchange/motion_source.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
@@ -36,14 +37,13 @@ AddReport add_files(db::Database& database, const std::vector<std::string>& file
     std::vector<std::pair<int64_t, std::string>> stored;
     try {
       const auto clips = prepare_file(file, options);
-      database.begin();
+      db::Transaction transaction(database);
       for (const PreparedClip& item : clips) {
         stored.emplace_back(database.add_clip(item.clip, item.motion), item.clip.name);
       }
-      database.commit();
+      transaction.commit();
       report.clips.insert(report.clips.end(), stored.begin(), stored.end());
     } catch (const Error& error) {
-      database.rollback();
       report.rejected.push_back({file, error.what()});
     }
   }

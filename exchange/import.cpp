@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "db/transaction.h"
 #include "exchange/archive.h"
 #include "exchange/humanml_folder.h"
 #include "exchange/motion_folder.h"
@@ -67,13 +68,8 @@ class ImportWriter {
     for (const SourceFile& file : source.files()) total_bytes_ += file.bytes;
     report_.files = static_cast<int>(source.files().size());
     for (const std::string& warning : source.warnings()) add_warning(warning);
-    database_.begin();
+    batch_.emplace(database_);
   }
-  ~ImportWriter() {
-    if (open_) database_.rollback();
-  }
-  ImportWriter(const ImportWriter&) = delete;
-  ImportWriter& operator=(const ImportWriter&) = delete;
 
   void store(size_t i, ReadFile&& file) {
     const SourceFile& place = source_.files()[i];
@@ -94,18 +90,13 @@ class ImportWriter {
                         " files; they are stored. Run the same import again to go on");
     }
     if (++in_batch_ >= kFilesInBatch) {
-      database_.commit();
-      open_ = false;
-      database_.begin();
-      open_ = true;
+      batch_->commit();
+      batch_.emplace(database_);
       in_batch_ = 0;
     }
   }
 
-  void close() {
-    database_.commit();
-    open_ = false;
-  }
+  void close() { batch_->commit(); }
 
   ImportReport& report() { return report_; }
 
@@ -192,7 +183,7 @@ class ImportWriter {
   ImportReport report_;
   uint64_t total_bytes_ = 0;
   int in_batch_ = 0;
-  bool open_ = true;
+  std::optional<db::Transaction> batch_;
 };
 
 void check_import_options(const ImportOptions& options) {

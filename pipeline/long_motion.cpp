@@ -25,13 +25,13 @@ double judge_segment(const Generator& generator, const std::string& sentence, co
 
 }  // namespace
 
-ScriptedMotion make_long_motion(const Generator& generator, const EvidenceSource& source,
+ScriptedMotion make_long_motion(const Generator& generator, const FindEvidence& find,
                                 std::span<const ScriptLine> lines, const GenerateOptions& options,
                                 const Monitor& monitor) {
   std::vector<ScriptSegment> segments;
   ScriptedMotion result;
   for (const ScriptLine& line : lines) {
-    FoundEvidence found = find_evidence(generator, source, line.sentence, options);
+    FoundEvidence found = find(line.sentence);
     ScriptedSegment segment;
     segment.sentence = line.sentence;
     segment.evidence = std::move(found.evidence);

@@ -22,15 +22,10 @@
 #include "search/query.h"
 #include "text/caption.h"
 
-namespace remomask {
-
-namespace {
-
-using pipeline::FoundEvidence;
-using pipeline::Generator;
+namespace remomask::pipeline {
 
 /// Evidence from the clips of a database.
-class DatabaseSource final : public pipeline::EvidenceSource {
+class DatabaseSource final : public EvidenceSource {
  public:
   explicit DatabaseSource(const search::MotionSearch& search) : search_(search) {}
 
@@ -49,6 +44,15 @@ struct LoadedModel {
   Generator generator;
   std::string hash;
 };
+
+}  // namespace remomask::pipeline
+
+namespace remomask {
+
+namespace {
+
+using pipeline::FoundEvidence;
+using pipeline::Generator;
 
 /// All settings that change what is generated, in one line.
 std::string describe_settings(const std::string& model_hash, const GenerateOptions& options) {
@@ -96,28 +100,41 @@ struct TextToMotion::Impl {
   std::string model_path, database_path;
   OpenOptions options;
   std::shared_ptr<const retriever::Retriever> retriever;
-  search::MotionSearch search;
-  DatabaseSource source;
-  mutable std::mutex mutex;  // of `model`
-  mutable std::shared_ptr<const LoadedModel> model;
+  std::string database_uuid;
+  std::unique_ptr<const search::MotionSearch> opened_search;  // none without retrieval
+  mutable std::mutex mutex;                                   // of `model`
+  mutable std::shared_ptr<const pipeline::LoadedModel> model;
 
   Impl(const std::string& model_file, const std::string& database_file, const OpenOptions& open)
       : model_path(model_file),
         database_path(database_file),
         options(open),
         retriever(std::make_shared<retriever::Retriever>(nn::load_stage(model_file, "retriever"))),
-        search(retriever, database_file, open.index),
-        source(search) {}
+        database_uuid(db::Database(database_file, db::OpenMode::read_only).uuid()) {
+    if (!options.retrieval) return;
+    opened_search = std::make_unique<search::MotionSearch>(retriever, database_file, open.index);
+  }
+
+  const search::MotionSearch& search() const {
+    if (opened_search) return *opened_search;
+    throw Error("opened without retrieval: nothing can be searched or retrieved");
+  }
+
+  FoundEvidence evidence(const Generator& generator, const std::string& sentence,
+                         const GenerateOptions& used) const {
+    if (!used.use_retrieval) return {};
+    return find_evidence(generator, pipeline::DatabaseSource(search()), sentence, used);
+  }
 
   /// Loads the generator when it is first needed.
-  std::shared_ptr<const LoadedModel> load() const {
+  std::shared_ptr<const pipeline::LoadedModel> load() const {
     const std::scoped_lock lock(mutex);
     if (model) return model;
     const auto stages = nn::load_model(model_path);
-    std::string digest = search.database_uuid();
+    std::string digest = database_uuid;
     for (const auto& [kind, stage] : stages) digest += nn::stage_hash(stage);
-    auto loaded = std::make_shared<const LoadedModel>(
-        LoadedModel{Generator(retriever, stages), content_hash(digest)});
+    auto loaded = std::make_shared<const pipeline::LoadedModel>(
+        pipeline::LoadedModel{Generator(retriever, stages), content_hash(digest)});
     if (!options.low_memory) model = loaded;
     return loaded;
   }
@@ -130,7 +147,7 @@ struct TextToMotion::Impl {
     if (choice.given || choice.rule == LengthRule::evidence) return choice;
     std::vector<pipeline::LengthNeighbour> neighbours;
     for (const search::FoundClip& found :
-         search.nearest(query, pipeline::kLengthNeighbours, one.evidence)) {
+         search().nearest(query, pipeline::kLengthNeighbours, one.evidence)) {
       neighbours.push_back({found.hit.similarity, found.hit.clip.frames});
     }
     choice.neighbours = static_cast<int>(neighbours.size());
@@ -140,12 +157,12 @@ struct TextToMotion::Impl {
     return choice;
   }
 
-  void note_provenance(const LoadedModel& loaded, const std::string& sentence,
+  void note_provenance(const pipeline::LoadedModel& loaded, const std::string& sentence,
                        const GenerateOptions& used, Provenance& result) const {
     result.sentence = sentence;
     result.seed = used.seed;
     result.generator = describe_settings(loaded.hash, used);
-    result.database = search.database_uuid();
+    result.database = database_uuid;
   }
 };
 
@@ -165,7 +182,7 @@ GeneratedMotion TextToMotion::generate(const std::string& sentence, const Genera
   check_options(options);
   const auto loaded = impl_->load();
   const Generator& generator = loaded->generator;
-  FoundEvidence found = find_evidence(generator, impl_->source, sentence, options);
+  FoundEvidence found = impl_->evidence(generator, sentence, options);
 
   struct Made {
     pipeline::Generated generated;
@@ -213,7 +230,7 @@ EditedMotion TextToMotion::edit(const Motion& original, std::span<const EditSpan
   }
   const auto loaded = impl_->load();
   const Generator& generator = loaded->generator;
-  FoundEvidence found = find_evidence(generator, impl_->source, sentence, options);
+  FoundEvidence found = impl_->evidence(generator, sentence, options);
   pipeline::CandidateList<pipeline::Edited> candidates(*impl_->retriever,
                                                        generator.sentence_vector(sentence));
   for (const uint64_t seed : pipeline::candidate_seeds(options.seed, options.best_of)) {
@@ -249,8 +266,12 @@ ScriptedMotion TextToMotion::script(std::span<const ScriptLine> lines,
   check_options(options);
   for (const ScriptLine& line : lines) text::normalise_prompt(line.sentence);
   const auto loaded = impl_->load();
-  ScriptedMotion result =
-      pipeline::make_long_motion(loaded->generator, impl_->source, lines, options, monitor);
+  ScriptedMotion result = pipeline::make_long_motion(
+      loaded->generator,
+      [&](const std::string& sentence) {
+        return impl_->evidence(loaded->generator, sentence, options);
+      },
+      lines, options, monitor);
   const db::Database database(impl_->database_path, db::OpenMode::read_only);
   pipeline::measure_long_motion(result, database);
   Provenance origin;
@@ -266,17 +287,17 @@ std::vector<Evidence> TextToMotion::retrieve(const std::string& sentence,
   nn::set_compute_threads(impl_->options.threads);
   text::normalise_prompt(sentence);
   check_options(options);
-  return find_evidence(impl_->load()->generator, impl_->source, sentence, options).evidence;
+  return impl_->evidence(impl_->load()->generator, sentence, options).evidence;
 }
 
 SearchAnswer TextToMotion::search(const SearchQuery& query) const {
   nn::set_compute_threads(impl_->options.threads);
-  return impl_->search.search(query);
+  return impl_->search().search(query);
 }
 
 std::vector<CaptionHit> TextToMotion::captions_for(const SearchQuery& query) const {
   nn::set_compute_threads(impl_->options.threads);
-  return impl_->search.captions_for(query);
+  return impl_->search().captions_for(query);
 }
 
 std::string TextToMotion::identity(const GenerateOptions& options) const {

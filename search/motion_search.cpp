@@ -10,13 +10,13 @@
 #include <unordered_map>
 
 #include "db/captions_index.h"
+#include "db/clip_filter.h"
 #include "index/vector_index.h"
 #include "motion/features.h"
 #include "nn/model_file.h"
 #include "remomask/error.h"
 #include "retriever/retriever.h"
 #include "search/calibration.h"
-#include "db/clip_filter.h"
 #include "search/hit_list.h"
 #include "search/moments.h"
 #include "search/search_scene.h"
@@ -278,7 +278,8 @@ std::vector<FoundClip> MotionSearch::nearest(const std::vector<float>& query, in
   impl_->refresh();
   SearchScene scene;
   scene.state = impl_->state;
-  if (!filter.empty()) scene.allowed = db::matching_clips(impl_->database, scene.state->clips, filter);
+  if (!filter.empty())
+    scene.allowed = db::matching_clips(impl_->database, scene.state->clips, filter);
   SearchQuery hits;
   hits.k = k;
   std::vector<FoundClip> result;
@@ -294,11 +295,6 @@ std::vector<FoundClip> MotionSearch::nearest(const std::vector<float>& query, in
 Motion MotionSearch::motion(int64_t clip_id) const {
   const std::scoped_lock lock(impl_->mutex);
   return impl_->database.motion(clip_id);
-}
-
-std::string MotionSearch::database_uuid() const {
-  const std::scoped_lock lock(impl_->mutex);
-  return impl_->database.uuid();
 }
 
 }  // namespace remomask::search

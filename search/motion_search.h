@@ -47,8 +47,6 @@ class MotionSearch {
 
   /// The joints of a stored clip. Throws Error for a clip that is not there.
   Motion motion(int64_t clip_id) const;
-  /// UUID of the database.
-  std::string database_uuid() const;
 
  private:
   struct Impl;

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/core.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 
@@ -27,7 +28,7 @@ void register_ablate(CLI::App& app, Program& program) {
   add_repeatable(*command, "--batch", options->batch, "clips a step, NUMBER or STAGE=NUMBER");
   command->add_option("--source", options->sources, "only these data sets (repeatable)");
   options->evaluator.add(*command);
-  command->add_option("--prompts", options->prompts, "motions a trial")->check(CLI::PositiveNumber);
+  command->add_option("--prompts", options->prompts, "motions a trial")->check(positive_number());
   command->add_option("--split", options->split, "captions of these clips")->capture_default_str();
   command
       ->add_option("--guidance-sweep", options->guidance_sweep,

@@ -9,7 +9,7 @@
 namespace remomask::tools {
 
 void ClipSelection::add(CLI::App& command) {
-  command.add_option("clips", clips, "names or numbers of clips");
+  command.add_option("clips", clips, "names of clips, or their numbers as #12");
   filter.add(command);
 }
 
@@ -37,11 +37,15 @@ std::vector<int64_t> ClipSelection::chosen_ids(const db::Database& database) con
 int64_t find_clip(const db::Database& database, const std::string& name_or_id) {
   if (const auto id = database.find_name(name_or_id)) return *id;
   int64_t id = 0;
+  const char* begin = name_or_id.data() + (name_or_id.starts_with("#") ? 1 : 0);
   const char* end = name_or_id.data() + name_or_id.size();
-  const auto parsed = std::from_chars(name_or_id.data(), end, id);
-  if (parsed.ec == std::errc() && parsed.ptr == end) return database.clip(id).id;
-  throw Error(database.path() + ": there is no clip '" + name_or_id +
-              "'; remomask db list shows the names");
+  const auto parsed = std::from_chars(begin, end, id);
+  const bool is_number = parsed.ec == std::errc() && parsed.ptr == end;
+  if (is_number && begin != name_or_id.data()) return database.clip(id).id;
+  // Digits are a name first: data sets name their clips 000002.
+  throw Error(database.path() + ": there is no clip named \"" + name_or_id + "\"; " +
+              (is_number ? "write #" + std::to_string(id) + " for clip number " + std::to_string(id)
+                         : "remomask db list shows the names"));
 }
 
 nlohmann::json parse_labels(const std::vector<std::string>& pairs) {

@@ -9,7 +9,7 @@
 
 namespace remomask::tools {
 
-/// Which clips a command is about: by name or number, by the filters of a
+/// Which clips a command is about: by name or #number, by the filters of a
 /// search, or by both (those of the named that pass).
 struct ClipSelection {
   std::vector<std::string> clips;
@@ -24,7 +24,7 @@ struct ClipSelection {
   std::vector<int64_t> chosen_ids(const db::Database& database) const;
 };
 
-/// The clip of this name, or else of this number. Throws Error when there is none.
+/// The clip of this name, or of this number if written as #12. Throws Error if there is none.
 int64_t find_clip(const db::Database& database, const std::string& name_or_id);
 
 /// {"key=value", ...} -> labels. Numbers, true, false, null, lists and objects are

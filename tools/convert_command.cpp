@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "remomask/motion_file.h"
+#include "tools/output_path.h"
 #include "tools/program.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 
@@ -10,6 +13,7 @@ void register_convert(CLI::App& app, Program& program) {
     std::string input, output, up_axis;
     double metres_per_unit = 0;
     MotionFileOptions file;
+    OutputOptions overwrite;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
@@ -17,16 +21,18 @@ void register_convert(CLI::App& app, Program& program) {
                   "remomask convert take.bvh joints.npy");
   command->add_option("input", options->input, ".bvh or .npy (joints or features)")->required();
   command->add_option("output", options->output, ".bvh or .npy")->required();
+  options->overwrite.add(*command);
   command->add_option("--skeleton-map", options->file.skeleton_map, "map name or file");
   command->add_option("--up-axis", options->up_axis, "X, Y or Z; default: found")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
   command->add_option("--metres-per-unit", options->metres_per_unit, "default: found")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--skip-frames", options->file.skip_frames, "frames to drop at the start");
   command->callback([options, &program] {
     if (!options->up_axis.empty()) options->file.up_axis = options->up_axis[0];
     if (options->metres_per_unit > 0) options->file.metres_per_unit = options->metres_per_unit;
     const LoadedMotion loaded = load_motion(options->input, options->file);
+    options->overwrite.check(options->output, options->input, program);
     save_motion(options->output, loaded.motion);
     if (program.json) {
       return program.print_json({{"output", options->output},
@@ -37,8 +43,8 @@ void register_convert(CLI::App& app, Program& program) {
                                  {"metres_per_unit", loaded.metres_per_unit},
                                  {"up_axis", std::string(1, loaded.up_axis)}});
     }
-    fmt::print("{}: {} frames at 20 fps (from {} at {:g} fps, skeleton map {})\n", options->output,
-               loaded.motion.frames, loaded.source_frames, loaded.source_fps,
+    fmt::print("{}: {} at 20 fps (from {} at {:g} fps, skeleton map {})\n", options->output,
+               counted(loaded.motion.frames, "frame"), loaded.source_frames, loaded.source_fps,
                loaded.skeleton_map.empty() ? "none" : loaded.skeleton_map);
   });
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/counted.h"
 #include "db/storing_database.h"
+#include "db/transaction.h"
 #include "exchange/add_files.h"
 #include "remomask/error.h"
 #include "tools/clip_selection.h"
@@ -104,17 +106,18 @@ void register_tag(CLI::App& group, Program& program) {
   command->callback([options, &program] {
     if (options->empty()) throw Error("nothing is to be changed; say --add, --drop or --set-...");
     db::Database database(options->database, db::OpenMode::read_write);
-    database.begin();
+    db::Transaction transaction(database);
     const auto ids = options->selection.chosen_ids(database);
     int64_t changed = 0;
     for (const int64_t id : ids) {
       changed += database.update_clip(id, options->changes(database.clip(id))) ? 1 : 0;
     }
-    database.commit();
+    transaction.commit();
     if (program.json) {
       return program.print_json({{"chosen", ids.size()}, {"changed", changed}});
     }
-    fmt::print("{} clips were chosen, {} of them changed\n", ids.size(), changed);
+    fmt::print("{} chosen, {} changed\n", counted(static_cast<int64_t>(ids.size()), "clip"),
+               changed);
   });
 }
 
@@ -132,7 +135,7 @@ void register_remove(CLI::App& group, Program& program) {
   command->add_flag("--yes", options->yes, "needed when more than one clip is meant");
   command->callback([options, &program] {
     db::Database database(options->database, db::OpenMode::read_write);
-    database.begin();
+    db::Transaction transaction(database);
     const auto ids = options->selection.chosen_ids(database);
     if (ids.size() > 1 && !options->yes) {
       throw Error(
@@ -143,10 +146,12 @@ void register_remove(CLI::App& group, Program& program) {
     std::vector<std::string> names;
     for (const int64_t id : ids) names.push_back(database.clip(id).name);
     database.remove(ids);
-    database.commit();
+    transaction.commit();
     if (program.json) return program.print_json({{"removed", names}});
     for (const std::string& name : names) fmt::print("removed {}\n", name);
-    if (names.empty()) fmt::print("no clip passes the filters\n");
+    fmt::print("{}\n", names.empty() ? "no clip passes the filters"
+                                     : counted(static_cast<int64_t>(names.size()), "clip") +
+                                           " removed from " + options->database);
   });
 }
 

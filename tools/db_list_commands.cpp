@@ -3,6 +3,7 @@
 #include "tools/clip_selection.h"
 #include "tools/database_info.h"
 #include "tools/db_commands.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 
@@ -30,7 +31,7 @@ void register_list(CLI::App& group, Program& program) {
   options->filter.add(*command);
   command->add_option("--limit", options->limit, "show at most so many; 0: all")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command->callback([options, &program] {
     const db::Database database(options->database, db::OpenMode::read_only);
     const db::ReadSnapshot snapshot(database);

@@ -45,6 +45,7 @@ void register_edit(CLI::App& app, Program& program) {
   options->files.add_database(*command);
   options->filter.add(*command);
   options->generation.add(*command);
+  options->overwrite.add(*command);
   command->callback([options, &program] {
     require_writable_output(options->output);
     core(program).edit(*options, program);

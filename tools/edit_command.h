@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tools/generation_options.h"
+#include "tools/output_path.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
@@ -20,6 +21,7 @@ struct EditCommand {
   FileOptions files;
   FilterOptions filter;
   GenerationOptions generation;
+  OutputOptions overwrite;
   int count = 1;
 };
 

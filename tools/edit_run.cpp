@@ -18,6 +18,7 @@ namespace remomask::tools {
 
 void run_edit(const EditCommand& command, Program& program) {
   using Clock = std::chrono::steady_clock;
+  if (command.count == 1) command.overwrite.check(command.output, command.input, program);
   MotionFileOptions reading;
   reading.canonical = false;
   const Motion original = load_motion(command.input, reading).motion;
@@ -35,6 +36,7 @@ void run_edit(const EditCommand& command, Program& program) {
   OpenOptions open;
   open.index = command.files.index;
   open.threads = program.threads;
+  open.retrieval = needs_search(command.generation);
   const TextToMotion remomask(command.files.model_path(), command.files.database_path(), open);
   nlohmann::json motions = nlohmann::json::array();
   std::vector<drawing::SheetRow> rows = {{"before", command.input, original}};
@@ -53,6 +55,7 @@ void run_edit(const EditCommand& command, Program& program) {
     made.original = command.input;
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const std::string path = sample_path(command.output, i, command.count);
+    if (command.count > 1) command.overwrite.check(path, command.input, program);
     save_motion(path, made);
     nlohmann::json entry = pipeline::motion_document(made);
     entry["file"] = path;

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/core.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 
@@ -85,7 +86,7 @@ void register_evaluator(CLI::App& parent, Program& program) {
   options->input.add_clips(*command);
   options->evaluator.add(*command);
   command->add_option("--draws", options->draws, "draws of captions and batches")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--batch", options->batch, "pairs among which the right one is found")
       ->check(CLI::Range(2, 1000));
   command->callback([options, &program] { core(program).evaluate_evaluator(*options, program); });
@@ -116,7 +117,7 @@ void register_generation(CLI::App& parent, Program& program) {
       ->add_option("--prompts", options->prompts,
                    "number of prompts; 0: every clip of the split once")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command->add_option("--split", options->prompt_split, "captions of these clips")
       ->capture_default_str();
   command
@@ -128,12 +129,12 @@ void register_generation(CLI::App& parent, Program& program) {
       ->capture_default_str();
   command->add_option("--repeats", options->repeats, "generations of every prompt (papers: 20)")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command
       ->add_option("--modality-prompts", options->modality_prompts,
                    "prompts with 30 more generations, for MultiModality (papers: 96)")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command->add_option("--judge", options->judge, "space in which the nearest real motion is found")
       ->capture_default_str()
       ->check(CLI::IsMember({"evaluator", "retriever"}));

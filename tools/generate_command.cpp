@@ -60,6 +60,7 @@ void register_generate(CLI::App& app, Program& program) {
   options->files.add_database(*command);
   options->filter.add(*command);
   options->generation.add(*command);
+  options->overwrite.add(*command);
   command->callback([options, prompt, &program] {
     if (prompt->count() == 0 && options->script.empty()) {
       throw CLI::RequiredError("a sentence, or --script");

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "tools/generation_options.h"
+#include "tools/output_path.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
 
@@ -14,6 +15,7 @@ struct GenerateCommand {
   FileOptions files;
   FilterOptions filter;
   GenerationOptions generation;
+  OutputOptions overwrite;
   int count = 1;
 };
 

@@ -83,6 +83,7 @@ void run_script(const GenerateCommand& command, const TextToMotion& remomask,
   const ScriptedMotion made = remomask.script(lines, options, program.monitor());
   program.finish_progress();
   const double seconds = seconds_since(start);
+  command.overwrite.check(command.output, "", program);
   save_motion(command.output, made);
   std::vector<drawing::SheetRow> rows;
   for (const ScriptedSegment& segment : made.segments) {
@@ -103,6 +104,7 @@ void run_generate(const GenerateCommand& command, Program& program) {
   OpenOptions open;
   open.index = command.files.index;
   open.threads = program.threads;
+  open.retrieval = needs_search(command.generation);
   const TextToMotion remomask(command.files.model_path(), command.files.database_path(), open);
   GenerateOptions options = command.generation.chosen();
   options.evidence = command.filter.filter();
@@ -123,6 +125,7 @@ void run_generate(const GenerateCommand& command, Program& program) {
     program.finish_progress();
     const double seconds = seconds_since(start);
     const std::string path = sample_path(command.output, i, command.count);
+    command.overwrite.check(path, "", program);
     save_motion(path, made);
     motions.push_back(answer_entry(pipeline::motion_document(made), path, seconds));
     rows.push_back({command.prompt, evidence_line(made.evidence), made.motion});

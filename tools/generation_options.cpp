@@ -1,4 +1,5 @@
 #include "tools/generation_options.h"
+#include "tools/usage.h"
 
 #include <CLI/CLI.hpp>
 
@@ -27,7 +28,7 @@ void GenerationOptions::add(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--temperature", sampling.temperature, "0: always the likeliest code")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command.add_option("--top", sampling.top_share, "share of the codes that can be sampled")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
@@ -35,13 +36,13 @@ void GenerationOptions::add(CLI::App& command) {
       .add_option("--correction-rounds", sampling.correction_rounds,
                   "passes that draw the least likely tenth again")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command.add_option("--residual-guidance", sampling.residual_guidance, "of the detail levels")
       ->capture_default_str();
   command
       .add_option("--residual-temperature", sampling.residual_temperature, "of the detail levels")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command.add_flag("--no-retrieval", no_retrieval, "from the text alone");
   command.add_flag("--read-untrusted", generate.read_untrusted,
                    "read retrieved motions even where none fits the sentence well");
@@ -67,6 +68,10 @@ GenerateOptions GenerationOptions::chosen() const {
   result.use_retrieval = !no_retrieval;
   result.length = length_rule(length);
   return result;
+}
+
+bool needs_search(const GenerationOptions& options) {
+  return !options.no_retrieval || length_rule(options.length) != LengthRule::evidence;
 }
 
 }  // namespace remomask::tools

@@ -18,4 +18,7 @@ struct GenerationOptions {
   GenerateOptions chosen() const;
 };
 
+/// Whether a generation with these options looks into the index.
+bool needs_search(const GenerationOptions& options);
+
 }  // namespace remomask::tools

@@ -11,6 +11,7 @@
 #include "remomask/error.h"
 #include "remomask/version.h"
 #include "tools/program.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 namespace {
@@ -28,6 +29,26 @@ std::string version_text() {
       SQLITE_VERSION);
 }
 
+struct Failure {
+  int code;
+  std::string kind, message, path = "";
+  long line = 0;
+};
+
+/// Says what failed: to people on standard error, with --json also as a document on standard
+/// output.
+int fail(Program& program, const Failure& failure) {
+  program.finish_progress();
+  fmt::print(stderr, "remomask: {}\n", failure.message);
+  if (failure.code == kExitUsage) fmt::print(stderr, "--help shows what is there.\n");
+  nlohmann::json error = {
+      {"code", failure.code}, {"kind", failure.kind}, {"message", failure.message}};
+  if (!failure.path.empty()) error["path"] = failure.path;
+  if (failure.line > 0) error["line"] = failure.line;
+  program.print_json({{"error", error}});
+  return failure.code;
+}
+
 int run(int argc, char** argv) {
   TerminalProgram program;
   CLI::App app{
@@ -38,11 +59,11 @@ int run(int argc, char** argv) {
   app.add_flag("--json", program.json, "print one JSON document on standard output");
   app.add_flag("--quiet", program.quiet, "no progress");
   app.add_option("--threads", program.threads, "CPU threads; 0: all available")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 ok, 1 failed, 2 wrong usage. \"remomask COMMAND --help\" shows the\n"
-      "options of a command and an example.");
+      "Exit status: 0 ok, 1 failed, 2 wrong usage, 130 interrupted. \"remomask COMMAND --help\"\n"
+      "shows the options of a command and an example.");
   const RegisterCommand commands[] = {
       register_generate, register_edit,     register_search,  register_import, register_index,
       register_train,    register_evaluate, register_convert, register_sheet,  register_procedural,
@@ -52,21 +73,25 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     program.finish_progress();
-    return 0;
+    return std::fflush(stdout) == 0 && std::ferror(stdout) == 0
+               ? 0
+               : fail(program, {kExitFailed, "output", "cannot write to standard output"});
+  } catch (const CLI::CallForHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::CallForVersion& version) {
+    return app.exit(version);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
+    const std::string hint = usage_hint(app, argc, argv);
+    return fail(program, {kExitUsage, "usage", hint.empty() ? error.what() : hint});
   } catch (const Interrupted& error) {
-    program.finish_progress();
-    fmt::print(stderr, "remomask: {}\n", error.what());
-    return kExitInterrupted;
+    return fail(program, {kExitInterrupted, "interrupted", error.what()});
+  } catch (const FileError& error) {
+    return fail(program, {kExitFailed, "file", error.what(), error.path(), error.line()});
   } catch (const std::bad_alloc&) {
-    program.finish_progress();
-    fmt::print(stderr, "remomask: out of memory; use smaller batches or fewer clips\n");
-    return kExitFailed;
+    return fail(program,
+                {kExitFailed, "memory", "out of memory; use smaller batches or fewer clips"});
   } catch (const std::exception& error) {
-    program.finish_progress();
-    fmt::print(stderr, "remomask: {}\n", error.what());
-    return kExitFailed;
+    return fail(program, {kExitFailed, "error", error.what()});
   }
 }
 

@@ -21,6 +21,21 @@ void require_writable_output(const std::string& output) {
   }
 }
 
+void OutputOptions::add(CLI::App& command) {
+  command.add_flag("--force", force,
+                   "replace an output that exists without a note, even the input");
+}
+
+void OutputOptions::check(const std::string& output, const std::string& input,
+                          Program& program) const {
+  if (force || !fs::exists(output)) return;
+  std::error_code ignored;
+  if (!input.empty() && fs::equivalent(input, output, ignored)) {
+    throw Error("output \"" + output + "\" is the input; name another file, or add --force");
+  }
+  program.warn(output + " exists and is replaced");
+}
+
 std::string sample_path(const std::string& output, int i, int count) {
   if (count == 1) return output;
   const fs::path path(output);

@@ -3,9 +3,11 @@
 #include "db/clip_hash.h"
 #include "db/database.h"
 #include "db/storing_database.h"
+#include "db/transaction.h"
 #include "remomask/error.h"
 #include "synthetic/procedural.h"
 #include "tools/program.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 
@@ -22,7 +24,7 @@ void register_procedural(CLI::App& app, Program& program) {
   command->add_option("--db", options->database, "database file; made when missing")->required();
   command->add_option("--count", options->make.count, "number of clips")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--seed", options->make.seed, "other seed, other clips")
       ->capture_default_str();
   command->callback([options, &program] {
@@ -31,8 +33,9 @@ void register_procedural(CLI::App& app, Program& program) {
     const Monitor monitor = program.monitor();
     const auto clips = synthetic::make_procedural_clips(options->make);
     int added = 0, known = 0;
-    database.begin();
+    db::Transaction transaction(database);
     for (const synthetic::ProceduralClip& made : clips) {
+      if (monitor.stop_requested()) throw Interrupted("stopped; nothing was stored");
       db::Clip clip;
       // Every seed makes clips of the same kinds and numbers: names must differ.
       clip.name = options->make.seed == synthetic::ProceduralOptions().seed
@@ -56,7 +59,7 @@ void register_procedural(CLI::App& app, Program& program) {
       monitor.report({"make motions", static_cast<double>(added + known),
                       static_cast<double>(clips.size()), ""});
     }
-    database.commit();
+    transaction.commit();
     program.finish_progress();
     if (program.json) return program.print_json({{"added", added}, {"known", known}});
     fmt::print("{}: {} motions added, {} were there already\n", options->database, added, known);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "base/counted.h"
 #include "base/file.h"
 #include "drawing/contact_sheet.h"
 #include "remomask/error.h"
@@ -38,6 +39,10 @@ void register_sheet(CLI::App& app, Program& program) {
   command->add_option("--heading", options->sheet.heading, "above all rows");
   command->add_option("--poses", options->sheet.poses, "poses in a row")->capture_default_str();
   command->callback([options, &program] {
+    if (std::filesystem::path(options->output).extension() != ".png") {
+      throw Error("output \"" + options->output +
+                  "\": contact sheets are PNG files; end it in .png");
+    }
     if (options->titles.size() > options->inputs.size()) {
       throw Error("there are more --title than motion files");
     }
@@ -51,7 +56,7 @@ void register_sheet(CLI::App& app, Program& program) {
     }
     drawing::write_contact_sheet(options->output, rows, options->sheet);
     if (program.json) return program.print_json({{"output", options->output}});
-    fmt::print("{}: {} motions\n", options->output, rows.size());
+    fmt::print("{}: {}\n", options->output, counted(static_cast<int64_t>(rows.size()), "motion"));
   });
 }
 

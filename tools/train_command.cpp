@@ -4,6 +4,7 @@
 
 #include "base/preset.h"
 #include "tools/core.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 
@@ -32,11 +33,11 @@ void register_train(CLI::App& app, Program& program) {
   command->add_option("--captions", options->captions,
                       "more captions for the text encoder: JSON Lines with \"captions\"");
   command->add_option("--steps", options->steps, "steps; default: of the preset")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--batch", options->batch, "clips a step; default: of the preset")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--rate", options->learning_rate, "learning rate; default: of the preset")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--seed", options->seed, "of weights, order and masks")
       ->capture_default_str();
   command->add_option("--queues", options->queues, "negatives of the retriever besides the batch")
@@ -46,7 +47,7 @@ void register_train(CLI::App& app, Program& program) {
       ->add_option("--queue-size", options->queue_size,
                    "entries of each queue; default: of the "
                    "preset")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command
       ->add_option("--same-label-weight", options->same_label_weight,
                    "retriever: weight of clips with equal labels content and style as negatives of "

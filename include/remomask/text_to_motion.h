@@ -15,6 +15,9 @@ namespace remomask {
 struct OpenOptions {
   std::string index;        ///< index file; empty: beside the database
   int threads = 0;          ///< CPU threads of every call; 0: all that the process may use
+  /// false: open no index, so that a database without one will do. Then nothing can be searched,
+  /// retrieved or generated with retrieval.
+  bool retrieval = true;
   bool low_memory = false;  ///< free the generator's networks after every call that used them
 };
 
@@ -25,8 +28,8 @@ struct OpenOptions {
 ///     for (const remomask::Evidence& found : made.evidence) puts(found.hit.clip.name.c_str());
 ///     remomask::save_motion("wave.bvh", made);
 ///
-/// Opening reads the database and its index. The retriever is loaded at the first call that
-/// needs it, the generator at the first one that generates. Const functions may be called from
+/// Opening reads the database, its index and the model's retriever; the generator is loaded by the
+/// first call that generates. Const functions may be called from
 /// several threads. Every result is a function of model, database, query, options and seed: it
 /// does not depend on the number of threads, on earlier calls or on calls beside it.
 ///

@@ -98,8 +98,7 @@ TEST(ClipFilter, TagsLicencesAndSpeed) {
             std::string::npos);
   filter = {};
   filter.licences = {"GPL"};
-  EXPECT_NE(error_of([&] { db::matching_clips(clips, filter); }).find("'GPL'"),
-            std::string::npos);
+  EXPECT_NE(error_of([&] { db::matching_clips(clips, filter); }).find("'GPL'"), std::string::npos);
 }
 
 TEST(ClipFilter, CaptionsOfADatabase) {

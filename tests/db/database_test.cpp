@@ -9,6 +9,7 @@
 
 #include "db/clip_hash.h"
 #include "db/sqlite.h"
+#include "db/transaction.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
@@ -352,6 +353,22 @@ TEST(Database, FullDiskIsNamed) {
   const std::string message =
       error_of([&] { connection.execute("INSERT INTO t VALUES (zeroblob(1000000))"); });
   EXPECT_NE(message.find("disk is full; free some space"), std::string::npos) << message;
+}
+
+TEST(Transaction, KeepsNothingOfWhatAnExceptionCut) {
+  const TestFolder folder;
+  db::Database database(folder / "t.sqlite", db::OpenMode::create);
+  const auto store = [&](const std::string& value, bool fail) {
+    db::Transaction transaction(database);
+    database.set_fact("key", value);
+    if (fail) throw Error("in the middle");
+    transaction.commit();
+  };
+  store("first", false);
+  EXPECT_THROW(store("second", true), Error);
+  EXPECT_EQ(database.fact("key"), "first");
+  store("third", false);
+  EXPECT_EQ(database.fact("key"), "third");
 }
 
 }  // namespace

@@ -215,6 +215,24 @@ TEST(Face, ClipsAddedMeanwhileAreFound) {
   EXPECT_EQ(answer.candidates, before + 1);
 }
 
+TEST(Face, NeedsNoIndexWithoutRetrieval) {
+  const ScratchFolder folder;
+  const std::string database = folder.path("unindexed.sqlite");
+  std::filesystem::copy_file(shipped_database(), database);
+  EXPECT_THROW(TextToMotion(shipped_model(), database), Error);
+  OpenOptions open = with_threads(2);
+  open.retrieval = false;
+  const TextToMotion unindexed(shipped_model(), database, open);
+  GenerateOptions options = short_motion(6);
+  EXPECT_THROW(unindexed.generate(kSentence, options), Error);
+  options.use_retrieval = false;
+  EXPECT_EQ(unindexed.generate(kSentence, options).motion.positions,
+            face().generate(kSentence, options).motion.positions);
+  const ProgramResult ran = run_program({"generate", kSentence, "--no-retrieval", "--db", database,
+                                         "--seconds", "2", "-o", folder.path("alone.npy")});
+  EXPECT_EQ(ran.exit_code, 0) << ran.errors;
+}
+
 TEST(Face, RefusesWhatItCannotDo) {
   EXPECT_THROW(face().generate(""), Error);
   GenerateOptions none;

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+
+namespace remomask::tools {
+
+/// What a person probably meant who used the program wrongly: the nearest command or option, or
+/// quotes around a sentence. Empty if nothing is near.
+std::string usage_hint(const CLI::App& app, int argc, const char* const* argv);
+
+/// Validators whose messages name the number and the limit as people write them.
+CLI::Validator positive_number();
+CLI::Validator non_negative_number();
+
+}  // namespace remomask::tools
