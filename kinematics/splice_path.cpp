@@ -165,7 +165,7 @@ class PathPlacer {
     const std::vector<double> share = progress(run);
     const Placement begin = at(run.first - 1), end = at(run.last);
     const double turn = std::remainder(end.yaw - begin.yaw, 2 * std::numbers::pi);
-    const auto done = [&](int t) { return share[static_cast<size_t>(t - run.first + 1)]; };
+    const auto done = [&](int t) { return share[static_cast<size_t>(t - run.first) + 1]; };
     for (int t = run.first; t <= run.last; ++t) {
       at(t) = step(t - 1, t, begin.yaw + turn * (done(t) + done(t - 1)) / 2);
     }

@@ -107,10 +107,10 @@ for command in $commands; do
   grep -q "^\.SH remomask ${command//-/\\\\-}\$" "$prefix/share/man/man1/remomask.1" ||
     fail "the manual page lacks $command"
   bash -c '. "$1"; COMP_WORDS=(remomask "$2"); COMP_CWORD=1; _remomask; printf "%s\n" "${COMPREPLY[@]}"' \
-    - "$completion" "${command:0:2}" | grep -qx -e "$command" || fail "the completion lacks $command"
+    - "$completion" "${command:0:2}" | grep -x -e "$command" >/dev/null || fail "the completion lacks $command"
 done
 bash -c '. "$1"; COMP_WORDS=(remomask search --min-s); COMP_CWORD=2; _remomask; printf "%s\n" "${COMPREPLY[@]}"' \
-  - "$completion" | grep -qx -e --min-seconds || fail "the completion lacks options"
+  - "$completion" | grep -x -e --min-seconds >/dev/null || fail "the completion lacks options"
 
 # It was the installed database, not that of the source tree.
 echo damaged >"$prefix/share/remomask/procedural.sqlite"
