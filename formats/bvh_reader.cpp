@@ -13,9 +13,9 @@ namespace remomask::formats {
 
 namespace {
 
-constexpr size_t kMostBvhBytes = size_t{1} << 30;
-constexpr int kMostBvhJoints = 10000;
-constexpr double kMostBvhValue = 1e9;
+constexpr size_t kMaxBvhBytes = size_t{1} << 30;
+constexpr int kMaxBvhJoints = 10000;
+constexpr double kMaxBvhValue = 1e9;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
@@ -125,7 +125,7 @@ class BvhParser {
     if (parse_number(word.data(), word.data() + word.size(), value) != word.data() + word.size()) {
       fail(fmt::format("{} needs a number, found \"{}\"", what, shown(word)));
     }
-    if (!(std::abs(value) <= kMostBvhValue)) {
+    if (!(std::abs(value) <= kMaxBvhValue)) {
       fail(fmt::format("{} holds {}, which is no sensible size", what, shown(word)));
     }
     return value;
@@ -174,8 +174,8 @@ class BvhParser {
     if (!names_.insert(joint.name).second) {
       fail(fmt::format("two joints are named \"{}\"; names must differ", shown(name)));
     }
-    if (static_cast<int>(bvh_.joints.size()) >= kMostBvhJoints) {
-      fail(fmt::format("more than {} joints; this is no motion capture file", kMostBvhJoints));
+    if (static_cast<int>(bvh_.joints.size()) >= kMaxBvhJoints) {
+      fail(fmt::format("more than {} joints; this is no motion capture file", kMaxBvhJoints));
     }
     expect("{", "after the joint's name");
     joint.offset = read_offset();
@@ -297,7 +297,7 @@ class BvhParser {
         fail(fmt::format("value {} of the frame is \"{}\", not a finite number", i + 1,
                          shown({p, static_cast<size_t>(last - p)})));
       }
-      if (!(std::abs(value) <= kMostBvhValue)) {
+      if (!(std::abs(value) <= kMaxBvhValue)) {
         fail(fmt::format("value {} of the frame is too large to be a motion", i + 1));
       }
       *out++ = static_cast<float>(value);
@@ -329,7 +329,7 @@ Bvh parse_bvh(std::string_view text, const std::string& path) {
 Bvh read_bvh(const std::string& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  if (!error && size > kMostBvhBytes) {
+  if (!error && size > kMaxBvhBytes) {
     throw FileError(path, 0, "is larger than 1 GiB; cut it into shorter clips");
   }
   const std::string text = read_file(path);

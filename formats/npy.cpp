@@ -13,7 +13,7 @@ namespace remomask::formats {
 
 namespace {
 
-constexpr size_t kMostNpyHeader = 1 << 16;
+constexpr size_t kMaxNpyHeader = 1 << 16;
 
 struct NpyHeader {
   std::string text;
@@ -36,7 +36,7 @@ NpyHeader read_npy_header(std::string_view content, const std::string& path) {
     }
   }
   const size_t start = 8 + size_bytes;
-  if (length == 0 || length > kMostNpyHeader || start + length > content.size()) {
+  if (length == 0 || length > kMaxNpyHeader || start + length > content.size()) {
     throw FileError(path, 0, "the .npy header is cut off; copy or save the file again");
   }
   return {std::string(content.substr(start, length)), start + length};

@@ -21,8 +21,8 @@ namespace {
 // can be among the best within its error bound, then those few are summed again
 // in one fixed order.
 
-constexpr int64_t kMostQueries = 256;              // of one matrix product
-constexpr int64_t kMostScores = int64_t{1} << 17;  // stay in the cache between product and choice
+constexpr int64_t kMaxQueries = 256;              // of one matrix product
+constexpr int64_t kMaxScores = int64_t{1} << 17;  // stay in the cache between product and choice
 constexpr int64_t kGatheredRows = 4096;            // stay in the cache between copy and product
 constexpr size_t kFirstLimit = 1024;
 constexpr int64_t kScoresAtOnce = 32;  // compared with the threshold by vector instructions
@@ -127,8 +127,8 @@ std::vector<std::vector<RowScore>> exact_top_k(const float* vectors, int64_t cou
   std::vector<std::vector<RowScore>> results(static_cast<size_t>(query_count));
   if (k <= 0 || query_count == 0) return results;
 
-  const int64_t batch = std::min(query_count, kMostQueries);
-  const int64_t block = std::min(available, rows ? kGatheredRows : kMostScores / batch);
+  const int64_t batch = std::min(query_count, kMaxQueries);
+  const int64_t block = std::min(available, rows ? kGatheredRows : kMaxScores / batch);
   std::vector<float> scores(static_cast<size_t>(batch * block));
   std::vector<float> gathered(rows ? static_cast<size_t>(block * width) : 0);
 

@@ -15,7 +15,7 @@ namespace remomask::index {
 
 namespace {
 
-constexpr int64_t kLeastCountOfLists = 500000;
+constexpr int64_t kMinCountOfLists = 500000;
 constexpr int64_t kRowsPerAddition = 8192;
 constexpr int kPointsPerCentroid = 64;  // more of them cost minutes and gain nothing measurable
 
@@ -37,7 +37,7 @@ std::unique_ptr<faiss::Index> make_faiss_index(int width, const std::string& fac
 
 std::string resolve_factory(const std::string& requested, int64_t count) {
   if (requested != "auto") return requested;
-  if (count < kLeastCountOfLists) return "Flat";
+  if (count < kMinCountOfLists) return "Flat";
   const double exponent = std::round(std::log2(2 * std::sqrt(static_cast<double>(count))));
   return fmt::format("IVF{},Flat", 1 << std::clamp(static_cast<int>(exponent), 10, 14));
 }

@@ -32,10 +32,10 @@ std::vector<double> body_speed(const Motion& motion, double fps) {
 
 /// Stretches of frames that a fast step of the toe begins or ends in.
 std::vector<motion::FrameRun> swings_of(const Motion& motion, int toe, double fps,
-                                        double least_speed) {
+                                        double min_speed) {
   std::vector<motion::FrameRun> swings;
   for (int t = 0; t + 1 < motion.frames; ++t) {
-    if (ground_speed(motion, t, toe, fps) <= least_speed) continue;
+    if (ground_speed(motion, t, toe, fps) <= min_speed) continue;
     if (swings.empty() || swings.back().last <= t) swings.push_back({t, t});
     swings.back().last = t + 2;
   }
