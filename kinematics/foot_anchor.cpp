@@ -12,8 +12,7 @@ namespace {
 
 constexpr int kLongestGap = 1, kShortestContact = 3;
 
-/// Turns runs of `value` of at most `longest` frames over; runs at the ends stay
-/// where `keep_ends`.
+/// Inverts runs of `value` of at most `longest` frames; with `keep_ends`, runs at the ends stay.
 void turn_short_runs(FootContacts& contacts, size_t foot, bool value, int longest, bool keep_ends) {
   const int frames = static_cast<int>(contacts.size());
   for (int first = 0; first < frames;) {

@@ -17,7 +17,7 @@ double ground_speed(const Motion& motion, int t, int joint, double fps) {
   return std::hypot(step.x(), step.z()) * fps;
 }
 
-/// The body's speed around every frame: mean over one second.
+/// Speed of the body around every frame: the mean over one second.
 std::vector<double> body_speed(const Motion& motion, double fps) {
   const int steps = motion.frames - 1, reach = static_cast<int>(fps / 2);
   std::vector<double> speed(static_cast<size_t>(motion.frames));
@@ -30,7 +30,7 @@ std::vector<double> body_speed(const Motion& motion, double fps) {
   return speed;
 }
 
-/// Stretches of frames that a fast step of the toe begins or ends in.
+/// Stretches of frames at which a fast step of the toe begins or ends.
 std::vector<motion::FrameRun> swings_of(const Motion& motion, int toe, double fps,
                                         double min_speed) {
   std::vector<motion::FrameRun> swings;
@@ -48,7 +48,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// By how much the swing is to be raised.
+/// How far the swing is to be raised.
 double missing_height(const Motion& motion, const motion::FrameRun& swing, int toe,
                       const std::vector<double>& body, const FootClearanceOptions& options) {
   std::vector<double> heights;
@@ -57,11 +57,11 @@ double missing_height(const Motion& motion, const motion::FrameRun& swing, int t
     heights.push_back(joint_position(motion, t, toe).y());
     speed += body[static_cast<size_t>(t)] / (swing.last - swing.first);
   }
-  return std::clamp(options.height * speed - median(heights), 0.0, options.most);
+  return std::clamp(options.height * speed - median(heights), 0.0, options.max_raise);
 }
 
-/// 0 just outside of the swing, 1 from `fade` frames in it on; nothing fades at the ends of
-/// the motion.
+/// 0 just outside the swing, 1 from `fade` frames inside it on. Nothing fades at the ends of the
+/// motion.
 double swing_weight(const Motion& motion, const motion::FrameRun& swing, int t, int fade) {
   int distance = fade;
   if (swing.first > 0) distance = std::min(distance, t - swing.first);

@@ -15,11 +15,11 @@ namespace remomask::kinematics {
 
 namespace {
 
-/// Adds to a stretch what lets it begin, or end, with the value and the change
-/// of the frames that stay: offset and slope fade to nothing (cubic Hermite).
+/// Makes a stretch begin, or end, with the value and the slope of the frames that stay: offset and
+/// slope fade to zero (cubic Hermite).
 struct EdgeOffset {
   Vec3 value = Vec3::Zero();  ///< at the frame that stays
-  Vec3 slope = Vec3::Zero();  ///< a frame, away from it
+  Vec3 slope = Vec3::Zero();  ///< per frame, away from it
   int fade = 0;
 
   /// `distance` frames from the frame that stays.
@@ -82,7 +82,7 @@ class Splicer {
     offset.value = bone(original_, edge, joint, parent) - bone(placed_.motion, edge, joint, parent);
     if (!has_beyond) return offset;
     if (parent < 0) {
-      // The root's place is met by the path; its speed is left to fit.
+      // The path already meets the root's position; its speed is still to be fitted.
       const Vec3 step = placed_.root_steps[static_cast<size_t>(std::min(edge, beyond))];
       offset.slope = joint_position(original_, edge, 0) - joint_position(original_, beyond, 0) -
                      (beyond < edge ? step : Vec3(-step));

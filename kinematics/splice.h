@@ -6,13 +6,12 @@
 namespace remomask::kinematics {
 
 struct SpliceOptions {
-  /// Frames inside of the mask, at each of its edges, over which the difference
-  /// in pose and velocity to the frames that stay fades (cubic Hermite); at most
-  /// half of the stretch.
+  /// Frames inside the mask, at each of its edges, over which the difference in pose and velocity
+  /// to the frames that stay fades out (cubic Hermite); at most half of the stretch.
   int fade = 6;
 };
 
-/// How far the new motion had to be bent to meet both ends; 0 where it had one.
+/// How far the new motion was bent to meet both ends; 0 where it had to meet only one.
 struct SpliceReport {
   double path_shift = 0;  ///< m, the largest of all stretches
   double path_turn = 0;   ///< radians

@@ -29,9 +29,8 @@ void require_finite(const Motion& motion, const Skeleton& skeleton) {
   }
 }
 
-/// The closed form of HumanML3D's inverse and forward kinematics: every
-/// rotation cancels, so each bone keeps its direction and takes the target
-/// length, and the root path is scaled by the length of the legs.
+/// Closed form of HumanML3D's inverse and forward kinematics: all rotations cancel, so each bone
+/// keeps its direction and takes the target length, and the root path is scaled by the leg length.
 Motion with_uniform_bones(const Motion& raw, const Skeleton& skeleton) {
   const auto bone = [&](int joint) {
     return (joint_position(raw, 0, joint) - joint_position(raw, 0, skeleton.parents[joint])).norm();
@@ -115,8 +114,8 @@ Motion resample(const Motion& motion, double source_fps, double target_fps) {
   if (!(source_fps > 0) || !(target_fps > 0)) throw Error("a frame rate must be above zero");
   if (motion.frames < 2 || source_fps == target_fps) return motion;
   const double seconds = (motion.frames - 1) / source_fps;
-  // The small addition keeps the last frame of clips whose length is a whole
-  // number of target frames up to rounding of the frame time.
+  // The small addition keeps the last frame of clips whose length is a whole number of target
+  // frames up to the rounding of the frame time.
   const int frames = static_cast<int>(seconds * target_fps + 1e-3) + 1;
   Motion result(frames, motion.joints);
   for (int t = 0; t < frames; ++t) {

@@ -28,9 +28,9 @@ void require_usable(const Motion& motion, const Skeleton& skeleton) {
   }
 }
 
-/// HumanML3D's swing rotations: world rest direction to world bone direction,
-/// each relative to the one before in its chain, every chain (also those of the
-/// arms) starting from the facing rotation.
+/// HumanML3D's swing rotations: from world rest direction to world bone direction, each relative to
+/// the previous one in its chain. Every chain, including those of the arms, starts from the facing
+/// rotation.
 void write_official_rotations(const Motion& motion, int frame, const Quat& facing,
                               const Skeleton& skeleton, float* out) {
   for (const std::vector<int>& chain : skeleton.chains) {
@@ -45,8 +45,8 @@ void write_official_rotations(const Motion& motion, int frame, const Quat& facin
   }
 }
 
-/// Heading-free swing rotations: in the facing frame, each from the T-pose
-/// direction as carried by the parent's rotation.
+/// Swing rotations free of the heading: in the facing frame, each from the T-pose direction as
+/// carried by its parent's rotation.
 void write_fixed_rotations(const Motion& motion, int frame, const Quat& facing,
                            const Skeleton& skeleton, float* out) {
   const std::vector<Vec3>& rest = t_pose_directions(skeleton);
@@ -96,8 +96,9 @@ RootPath recover_root(const Features& features) {
 
 void require_dimension(const Features& features, const Skeleton& skeleton) {
   if (features.dim != skeleton.feature_dim()) {
-    throw Error("features of " + std::to_string(features.dim) + " columns do not belong to the \"" +
-                skeleton.name + "\" skeleton, which has " + std::to_string(skeleton.feature_dim()));
+    throw Error("features of " + std::to_string(features.dim) +
+                " columns do not fit the skeleton \"" + skeleton.name + "\" skeleton, which has " +
+                std::to_string(skeleton.feature_dim()));
   }
 }
 

@@ -9,7 +9,7 @@ namespace remomask {
 Motion slice(const Motion& motion, int first, int last) {
   if (first < 0 || last > motion.frames || first > last) {
     throw Error("frames " + std::to_string(first) + " to " + std::to_string(last) +
-                " lie outside of the motion's " + std::to_string(motion.frames) + " frames");
+                " are outside the motion, which has " + std::to_string(motion.frames) + " frames");
   }
   Motion part(last - first, motion.joints);
   part.fps = motion.fps;
