@@ -1,6 +1,8 @@
 #include "kinematics/splice.h"
 #include "motion/vector.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -165,12 +167,14 @@ Motion splice_motion(const Motion& original, const Motion& made, const motion::P
                      const Skeleton& skeleton, const SpliceOptions& options, SpliceReport* report) {
   if (original.joints != skeleton.joints() || made.joints != skeleton.joints() ||
       original.frames < 1 || original.frames > mask.frames() || made.frames != mask.frames()) {
-    throw Error("the motions to splice are of " + std::to_string(original.frames) + " and " +
-                std::to_string(made.frames) + " frames for a mask of " +
-                std::to_string(mask.frames()) + "; they do not fit together");
+    throw Error(fmt::format(
+        "the motions to splice have {} and {} frames and the mask has {}; they do not fit "
+        "together",
+        original.frames, made.frames, mask.frames()));
   }
   for (int t = original.frames; t < mask.frames(); ++t) {
-    if (!mask.whole(t)) throw Error("frames behind the original motion must be new as a whole");
+    if (!mask.whole(t))
+      throw Error("frames after the end of the original motion must be new as a whole");
   }
   return Splicer(original, made, mask, skeleton, options).splice(made, report);
 }

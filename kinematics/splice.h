@@ -23,7 +23,7 @@ struct SpliceReport {
 /// size, and be shorter: frames that it lacks must be marked whole. Positions
 /// outside of the mask are those of `original` bit for bit. Inside:
 /// - bones have the mean lengths of the original, and its floor;
-/// - where all parts are marked, the path goes on from the pose before the stretch
+/// - where all parts are marked, the path continues from the pose before the stretch
 ///   (place, heading), ends in the pose behind it, or does both: path and heading
 ///   are then bent along the way, where the new motion moves;
 /// - where some parts stay, the new parts hang on them;

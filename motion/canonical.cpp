@@ -1,6 +1,8 @@
 #include "motion/canonical.h"
 #include "motion/vector.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,15 +17,15 @@ namespace {
 
 void require_finite(const Motion& motion, const Skeleton& skeleton) {
   if (motion.joints != skeleton.joints()) {
-    throw Error("the motion has " + std::to_string(motion.joints) + " joints, the skeleton \"" +
-                skeleton.name + "\" has " + std::to_string(skeleton.joints()));
+    throw Error(fmt::format("the motion has {} joints, the skeleton \"{}\" has {}", motion.joints,
+                            skeleton.name, skeleton.joints()));
   }
   if (motion.frames < 1) throw Error("the motion has no frames");
   for (int t = 0; t < motion.frames; ++t) {
     for (int j = 0; j < motion.joints; ++j) {
       if (!joint_position(motion, t, j).allFinite()) {
-        throw Error("frame " + std::to_string(t) + ", joint " + skeleton.joint_names[j] +
-                    ": the position is not a finite number");
+        throw Error(fmt::format("frame {}, joint {}: the position is not a finite number", t,
+                                skeleton.joint_names[j]));
       }
     }
   }
