@@ -70,7 +70,7 @@ double sum_of_numbers(const std::string& text) {
   return sum;
 }
 
-double least_seconds_of_from_chars() {
+double min_seconds_of_from_chars() {
   double least = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < 9; ++pass) {
     const auto start = std::chrono::steady_clock::now();
@@ -89,7 +89,7 @@ void count_text(benchmark::State& state) {
 void load_bvh(benchmark::State& state) {
   omp_set_num_threads(1);
   const std::string path = walk_file().path();
-  static const double floor_seconds = least_seconds_of_from_chars();
+  static const double floor_seconds = min_seconds_of_from_chars();
   for (auto _ : state) benchmark::DoNotOptimize(load_motion(path));
   count_text(state);
   report_floor(state, floor_seconds);

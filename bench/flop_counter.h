@@ -4,10 +4,10 @@
 
 namespace remomask {
 
-/// Counts the multiplications and additions of the matrix products and
-/// convolutions that libtorch and the program's own attention run while it lives,
-/// on all threads, forward and backward. One multiply-add counts as two.
-/// Recurrent layers are counted by the products that they are made of. One at a time.
+/// Counts the multiplications and additions of the matrix products and convolutions that libtorch
+/// and the program's own attention run during its lifetime, on all threads, forward and backward.
+/// One multiply-add counts as two. Recurrent layers count as the products that they consist of.
+/// Only one may exist at a time.
 class FlopCounter {
  public:
   FlopCounter();

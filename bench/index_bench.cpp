@@ -129,7 +129,7 @@ void index_update_files(benchmark::State& state, const Change& change) {
     std::filesystem::remove(index::delta_path(states().index_path));
     state.ResumeTiming();
     const index::IndexUpdate made = index::update_index(states().index_path, after, kRetriever);
-    if (!is_expected(made.difference, change)) state.SkipWithError("other clips have changed");
+    if (!is_expected(made.difference, change)) state.SkipWithError("the wrong clips have changed");
   }
 }
 
@@ -142,7 +142,7 @@ void index_follow(benchmark::State& state, const Change& change) {
     auto index = index::VectorIndex::open(states().index_path, *states().before, kRetriever);
     state.ResumeTiming();
     const index::IndexDifference difference = index.follow(after);
-    if (!is_expected(difference, change)) state.SkipWithError("other clips have changed");
+    if (!is_expected(difference, change)) state.SkipWithError("the wrong clips have changed");
   }
 }
 
@@ -155,7 +155,7 @@ void index_open(benchmark::State& state) {
   }
 }
 
-// What is not timed takes longer than what is: few iterations.
+// The untimed part takes longer than the timed one, so there are few iterations.
 void with_few_iterations(benchmark::internal::Benchmark* bench) {
   bench->Unit(benchmark::kMillisecond)
       ->UseRealTime()

@@ -5,7 +5,7 @@
 
 namespace remomask {
 
-/// `frames` frames of a procedural walk that goes forth and back without a jump.
+/// `frames` frames of a procedural walk that goes back and forth without a jump.
 inline Motion long_walk(int frames) {
   synthetic::ProceduralParameters parameters;
   parameters.duration = 9;

@@ -19,7 +19,7 @@ namespace {
 constexpr int kPasses = 9;  // the first ones also warm up
 
 template <typename Work>
-double least_seconds(const Work& work) {
+double min_seconds(const Work& work) {
   double least = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < kPasses; ++pass) {
     const auto start = std::chrono::steady_clock::now();
@@ -33,7 +33,7 @@ double least_seconds(const Work& work) {
 double measure_memory_read_rate() {
   const std::vector<float> data(size_t{32} << 20, 1.f);
   const auto count = static_cast<int64_t>(data.size());
-  const double seconds = least_seconds([&] {
+  const double seconds = min_seconds([&] {
     const float* values = data.data();
     float sum = 0;
 #pragma omp parallel for simd reduction(+ : sum)
@@ -48,7 +48,7 @@ double measure_gemm_rate() {
   const std::vector<float> a(size_t{kSize} * kSize, 0.5f), b(a.size(), 0.25f);
   std::vector<float> c(a.size());
   const float one = 1, zero = 0;
-  const double seconds = least_seconds([&] {
+  const double seconds = min_seconds([&] {
     sgemm_("N", "N", &kSize, &kSize, &kSize, &one, a.data(), &kSize, b.data(), &kSize, &zero,
            c.data(), &kSize);
     benchmark::DoNotOptimize(c.data());

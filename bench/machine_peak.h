@@ -4,18 +4,18 @@
 
 namespace remomask {
 
-/// Bytes per second at which this machine reads memory that no cache holds, with
-/// OpenMP's current number of threads: the best of several passes over 128 MB.
-/// Measured once for each number of threads.
+/// Bytes per second at which this machine reads memory outside the caches, with OpenMP's current
+/// number of threads: the best of several passes over 128 MB. Measured once for each number of
+/// threads.
 double memory_read_rate();
 
-/// FLOP per second of single-precision GEMM (1024^3, the program's own BLAS) with
-/// the current number of threads: the best of several. OpenMP's and the BLAS's
-/// numbers must agree. Measured once for each number of threads.
+/// FLOP per second of single-precision GEMM (1024^3, the program's own BLAS) with the current
+/// number of threads: the best of several passes. The thread numbers of OpenMP and the BLAS must
+/// agree. Measured once for each number of threads.
 double gemm_rate();
 
-/// Adds the counters `floor_ms`, the least time of one iteration, and `x_floor`,
-/// how many times that one iteration took (shown with an "s").
+/// Adds the counters `floor_ms`, the minimum time of one iteration, and `x_floor`, how many times
+/// that one iteration took (shown with an "s").
 void report_floor(benchmark::State& state, double floor_seconds);
 
 /// Adds the counters `FLOP` (per second) of iterations of `flops`, `peak_FLOP/s`

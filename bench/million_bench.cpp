@@ -45,7 +45,7 @@ const std::vector<float>& queries() {
   return vectors;
 }
 
-/// Against the exact scan that a filter brings about.
+/// Against the exact scan that a filter causes.
 double measured_recall() {
   const auto found = million().index.search(queries().data(), kQueries, kNearest);
   const auto truth =

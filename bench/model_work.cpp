@@ -19,8 +19,8 @@ int64_t row_channels(const tokenizer::TokenizerConfig& config) {
                           : motion::kPartSlots * tokenizer::kSlotChannels;
 }
 
-/// Multiply-adds for one token frame in what encoder and decoder have alike:
-/// patches, residual blocks, exchange between rows, and codes in or out.
+/// Multiply-adds per token frame in what encoder and decoder have in common: patches, residual
+/// blocks, exchange between rows, and codes in or out.
 double common_products(const tokenizer::TokenizerConfig& config) {
   if (config.widths.size() != 1) {
     throw Error("the work of a tokenizer is only known for one time scale");

@@ -6,10 +6,10 @@
 
 namespace remomask {
 
-/// Floating-point operations of matrix products, two for each multiply and add;
-/// everything else of a network is small beside them and not counted.
+/// Floating-point operations of matrix products, two for each multiply-add. Everything else in a
+/// network is small in comparison and not counted.
 
-/// How many rows of text and hits a condition of one sample has.
+/// The number of rows of text and hits in a condition of one sample.
 struct ConditionSize {
   int64_t text_tokens;  ///< S
   int64_t hits;         ///< k, not read without retrieval

@@ -16,7 +16,7 @@
 namespace remomask {
 namespace {
 
-constexpr int64_t kCount = 100000, kMostQueries = 64, kNearest = 10;
+constexpr int64_t kCount = 100000, kMaxQueries = 64, kNearest = 10;
 constexpr int kWidth = 512;
 
 const std::vector<float>& stored_vectors() {
@@ -25,7 +25,7 @@ const std::vector<float>& stored_vectors() {
 }
 
 const std::vector<float>& query_vectors() {
-  static const std::vector<float> vectors = random_unit_vectors(kMostQueries, kWidth, 2);
+  static const std::vector<float> vectors = random_unit_vectors(kMaxQueries, kWidth, 2);
   return vectors;
 }
 
@@ -66,8 +66,8 @@ void search_faiss(benchmark::State& state) {
   count_work(state, queries);
 }
 
-BENCHMARK(search_remomask)->Arg(1)->Arg(kMostQueries)->Apply(with_medians);
-BENCHMARK(search_faiss)->Arg(1)->Arg(kMostQueries)->Apply(with_medians);
+BENCHMARK(search_remomask)->Arg(1)->Arg(kMaxQueries)->Apply(with_medians);
+BENCHMARK(search_faiss)->Arg(1)->Arg(kMaxQueries)->Apply(with_medians);
 
 }  // namespace
 }  // namespace remomask

@@ -49,7 +49,7 @@ class StageFolder {
   fs::path path_ = fs::temp_directory_path() / ("remomask-bench-" + std::to_string(getpid()));
 };
 
-/// What happened between two reports of a training, which come once a second.
+/// What happened between two reports of a training, which arrive once a second.
 class StepMeter {
  public:
   explicit StepMeter(std::string stage) : stage_("train " + std::move(stage)) {}
@@ -92,7 +92,7 @@ void train_evaluator_steps(int64_t steps, const Monitor& monitor) {
                             evaluation::evaluator_preset(ModelSize::base), options, monitor);
 }
 
-/// Trains a stage, and before it for one step those that it builds on and that are not there.
+/// Trains a stage and, before it, for one step each, the missing stages that it builds on.
 void train_stage_steps(const std::string& stage, int64_t steps, const Monitor& monitor) {
   static const StageFolder folder;
   static training::GeneratorDataCache prepared;

@@ -16,17 +16,17 @@ namespace {
 constexpr double kMargin = 28, kCardGap = 18, kPadding = 22;
 constexpr double kTitleHeight = 34, kSubtitleHeight = 24, kTimesHeight = 26;
 constexpr double kFigureHeight = 250;  // pixels for the tallest pose
-constexpr double kShownHeight = 2.05;  // metres that fit into it, grows for high jumps
+constexpr double kShownHeight = 2.05;  // metres that fit into it; grows for high jumps
 constexpr double kOnionShare = 0.30;   // of the card's width
 
 void check_sheet(const std::vector<SheetRow>& rows, const SheetOptions& options) {
   if (rows.empty()) throw Error("a contact sheet needs at least one motion");
   if (options.poses < 2 || options.poses > 24)
-    throw Error("a contact sheet shows 2 to 24 poses a row");
+    throw Error("a contact sheet shows 2 to 24 poses in a row");
   if (options.width < 600 || options.width > 8000)
-    throw Error("a contact sheet is 600 to 8000 pixels wide");
+    throw Error("a contact sheet must be 600 to 8000 pixels wide");
   if (options.onion_poses < 0 || options.onion_poses == 1) {
-    throw Error("the strip through space shows 0 or at least 2 poses");
+    throw Error("the strip through space must show 0 or at least 2 poses");
   }
   for (const SheetRow& row : rows) {
     if (row.motion.joints != humanml_skeleton().joints() || row.motion.frames < 1) {

@@ -7,7 +7,7 @@
 
 namespace remomask::drawing {
 
-/// One motion of a sheet with its words.
+/// One motion of a sheet with its text.
 struct SheetRow {
   std::string title;     ///< the prompt
   std::string subtitle;  ///< for example the retrieved evidence; may be empty
@@ -24,10 +24,10 @@ struct SheetOptions {
   double fps = 20;
 };
 
-/// Draws every row as poses over time beside the path through space and writes
-/// a PNG atomically. Text is DejaVu Sans (Debian: fonts-dejavu-core); without
-/// it the system's substitute is used. Throws Error for no rows, motions of
-/// another skeleton or without frames, and options out of range.
+/// Draws every row as poses over time beside the path through space and writes a PNG atomically.
+/// The font is DejaVu Sans (Debian: fonts-dejavu-core) or, without it, the system's substitute.
+/// Throws Error if there are no rows, for motions of another skeleton or without frames, and for
+/// options out of range.
 void write_contact_sheet(const std::string& png_path, const std::vector<SheetRow>& rows,
                          const SheetOptions& options = {});
 

@@ -17,7 +17,7 @@ struct Colour {
 constexpr Colour kWarm{0.91, 0.43, 0.23}, kCool{0.16, 0.50, 0.79}, kTrunk{0.22, 0.25, 0.33};
 constexpr double kHeadRadius = 0.105;
 
-/// A limb: thickness in metres at both ends.
+/// A limb and its thickness at both ends, in metres.
 struct Limb {
   int from, to;
   double from_radius, to_radius;
@@ -85,7 +85,7 @@ void draw_trunk(cairo_t* cairo, const SheetCamera& camera, const Motion& motion,
   cairo_new_path(cairo);
   std::vector<Eigen::Vector2d> corners;
   for (int joint : kTrunkOutline) {
-    // Inside of the joints: the stroke around the outline adds the flesh.
+    // Inside the joints: the stroke around the outline adds the flesh.
     const bool hip = joint <= 2;
     const Vec3 p = centre + (joint_position(motion, frame, joint) - centre) * (hip ? 1.0 : 0.90);
     corners.push_back(camera.project(p));
@@ -152,7 +152,7 @@ void draw_figure(cairo_t* cairo, const SheetCamera& camera, const Motion& motion
                           2,
                       i});
   }
-  // The neck lies within head and trunk from every side: drawn before both.
+  // The neck lies within head and trunk from every side, so it is drawn before both.
   for (Piece& piece : pieces) {
     if (piece.limb == kNeckLimb) piece.depth = std::min(pieces[0].depth, pieces[1].depth) - 0.01;
   }

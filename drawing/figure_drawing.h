@@ -7,7 +7,7 @@
 
 namespace remomask::drawing {
 
-/// Parallel projection from a camera that looks down on the floor.
+/// Parallel projection for a camera that looks down on the floor.
 struct SheetCamera {
   Vec3 right, up, towards;     ///< axes; `towards` points to the viewer
   Vec3 centre = Vec3::Zero();  ///< drawn at (x, y)
@@ -18,8 +18,8 @@ struct SheetCamera {
   double depth(const Vec3& point) const { return towards.dot(point - centre); }
 };
 
-/// A body of 22 joints with rounded limbs: left side warm, right side cool,
-/// trunk dark; far limbs behind near ones. `opacity` 0 .. 1.
+/// A body of 22 joints with rounded limbs: left side warm, right side cool, trunk dark; far limbs
+/// behind near ones. `opacity` is 0 .. 1.
 void draw_figure(cairo_t* cairo, const SheetCamera& camera, const Motion& motion, int frame,
                  double opacity);
 
@@ -27,7 +27,7 @@ void draw_figure(cairo_t* cairo, const SheetCamera& camera, const Motion& motion
 void draw_shadow(cairo_t* cairo, const SheetCamera& camera, const Motion& motion, int frame,
                  double opacity);
 
-/// Floor lines every `step` metres over a rectangle, fading to its border.
+/// Floor lines every `step` metres over a rectangle, fading towards its edge.
 void draw_floor(cairo_t* cairo, const SheetCamera& camera, const Vec3& low, const Vec3& high,
                 double step);
 

@@ -33,7 +33,7 @@ void PngCanvas::write(const std::string& png_path) const {
   }
   if (status != CAIRO_STATUS_SUCCESS) {
     throw Error(png_path + ": cannot draw the picture: " + cairo_status_to_string(status) +
-                "; it has at most 32767 pixels a side, draw less in one");
+                "; a picture has at most 32767 pixels a side, so draw fewer motions in one");
   }
   write_file_atomically(png_path, png);
 }
@@ -48,7 +48,7 @@ void rounded_rectangle(cairo_t* cairo, double x, double y, double width, double 
   cairo_close_path(cairo);
 }
 
-/// Text from its left baseline, cut with an ellipsis where it is too wide.
+/// Text from its left baseline, truncated with an ellipsis if it is too wide.
 void show_text(cairo_t* cairo, double x, double y, const std::string& text, double size, bool bold,
                double grey, double max_width) {
   cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
@@ -59,7 +59,7 @@ void show_text(cairo_t* cairo, double x, double y, const std::string& text, doub
   cairo_text_extents(cairo, shown.c_str(), &extents);
   std::string kept = text;
   while (extents.x_advance > max_width && !kept.empty()) {
-    // Whole UTF-8 characters go.
+    // Removes whole UTF-8 characters.
     do {
       const bool inside = (static_cast<unsigned char>(kept.back()) & 0xC0) == 0x80;
       kept.pop_back();

@@ -7,14 +7,14 @@
 
 namespace remomask::drawing {
 
-/// A picture in the colour of paper that becomes a PNG file.
+/// A paper-coloured picture that becomes a PNG file.
 class PngCanvas {
  public:
-  /// In pixels.
+  /// Size in pixels.
   PngCanvas(int width, double height);
 
   cairo_t* cairo() const { return cairo_.get(); }
-  /// Atomically. Throws Error when drawing failed or the file cannot be written.
+  /// Writes the file atomically. Throws Error if drawing failed or the file cannot be written.
   void write(const std::string& png_path) const;
 
  private:
@@ -26,10 +26,10 @@ class PngCanvas {
   std::unique_ptr<cairo_t, Deleter> cairo_;
 };
 
-/// Makes the path, draws nothing.
+/// Makes the path without drawing it.
 void rounded_rectangle(cairo_t* cairo, double x, double y, double width, double height, double r);
 
-/// Text from its left baseline, cut with an ellipsis where it is too wide.
+/// Text from its left baseline, truncated with an ellipsis if it is too wide.
 void show_text(cairo_t* cairo, double x, double y, const std::string& text, double size, bool bold,
                double grey, double max_width);
 

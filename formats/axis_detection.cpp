@@ -31,7 +31,7 @@ char detect_up_axis(const Motion& raw, const Motion* rest_pose) {
   const Vec3 clip = long_axis(raw);
   Vec3 score = clip + Vec3(0, 0.4, 0);
   if (rest_pose) {
-    // Which axis counts, not its slant: rest poses lean as their bones do.
+    // Only the axis counts, not its slant: rest poses lean as their bones do.
     int along = 0;
     long_axis(*rest_pose).maxCoeff(&along);
     score[along] += 0.9;

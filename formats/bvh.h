@@ -22,8 +22,8 @@ struct BvhJoint {
   std::optional<Vec3> end_site;
 };
 
-/// A BVH file: hierarchy (parents first) and one row of channel values a frame,
-/// in the file's units and degrees.
+/// A BVH file: the hierarchy (parents first) and one row of channel values per frame, in the file's
+/// units and in degrees.
 struct Bvh {
   std::vector<BvhJoint> joints;
   int channels = 0;
@@ -31,22 +31,22 @@ struct Bvh {
   double frame_time = 0;      ///< seconds
   std::vector<float> values;  ///< [frames][channels]
 
-  int find_joint(std::string_view name) const;  ///< -1 when absent
+  int find_joint(std::string_view name) const;  ///< -1 if absent
 };
 
-/// Reads a BVH file: any hierarchy, channel order and frame rate, LF or CRLF.
-/// Throws FileError with the line for whatever is malformed, truncated or not
-/// finite. Memory is bounded by the size of the file.
+/// Reads a BVH file of any hierarchy, channel order and frame rate, with LF or CRLF. Throws
+/// FileError with the line of anything malformed, truncated or not finite. Memory is bounded by the
+/// size of the file.
 Bvh read_bvh(const std::string& path);
 
-/// The same from text; `path` is for messages.
+/// The same from text; `path` only appears in messages.
 Bvh parse_bvh(std::string_view text, const std::string& path);
 
-/// BVH text of the file (six decimals).
+/// Formats as BVH text (six decimals).
 std::string format_bvh(const Bvh& bvh);
 
-/// A point that moves with a joint, at `offset` in the joint's own axes (zero:
-/// the joint itself; its End Site's OFFSET: the End Site).
+/// A point that moves with a joint, at `offset` in the joint's own axes. A zero offset is the joint
+/// itself; the OFFSET of its End Site is the End Site.
 struct BvhPoint {
   int joint = 0;
   Vec3 offset = Vec3::Zero();
@@ -59,7 +59,7 @@ class BvhKinematics {
   BvhKinematics(const Bvh& bvh, std::vector<BvhPoint> points);
   /// World positions of the points in `frame`: points x 3 floats.
   void positions(int frame, float* out);
-  /// The same for the rest pose: all rotations zero, OFFSETs as they are.
+  /// The same for the rest pose: zero rotations, OFFSETs as they are.
   void rest_positions(float* out);
 
  private:

@@ -13,16 +13,16 @@ namespace remomask::formats {
 
 namespace {
 
-constexpr size_t kMostBvhBytes = size_t{1} << 30;
-constexpr int kMostBvhJoints = 10000;
-constexpr double kMostBvhValue = 1e9;
+constexpr size_t kMaxBvhBytes = size_t{1} << 30;
+constexpr int kMaxBvhJoints = 10000;
+constexpr double kMaxBvhValue = 1e9;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
 
-/// Decimal number at `p`; null when there is none. Numbers of up to 15 digits
-/// and small exponents (all that BVH files hold) are exact products of two
-/// exact doubles, so the result is rounded correctly; the rest goes the slow way.
+/// Decimal number at `p`; null if there is none. Numbers of up to 15 digits and small exponents
+/// (everything that BVH files hold) are exact products of two exact doubles, so the result is
+/// rounded correctly; other numbers take the slow path.
 const char* parse_number(const char* p, const char* end, double& value) {
   static constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                        1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
@@ -125,8 +125,8 @@ class BvhParser {
     if (parse_number(word.data(), word.data() + word.size(), value) != word.data() + word.size()) {
       fail(fmt::format("{} needs a number, found \"{}\"", what, shown(word)));
     }
-    if (!(std::abs(value) <= kMostBvhValue)) {
-      fail(fmt::format("{} holds {}, which is no sensible size", what, shown(word)));
+    if (!(std::abs(value) <= kMaxBvhValue)) {
+      fail(fmt::format("{} holds {}, which is not a plausible size", what, shown(word)));
     }
     return value;
   }
@@ -174,8 +174,8 @@ class BvhParser {
     if (!names_.insert(joint.name).second) {
       fail(fmt::format("two joints are named \"{}\"; names must differ", shown(name)));
     }
-    if (static_cast<int>(bvh_.joints.size()) >= kMostBvhJoints) {
-      fail(fmt::format("more than {} joints; this is no motion capture file", kMostBvhJoints));
+    if (static_cast<int>(bvh_.joints.size()) >= kMaxBvhJoints) {
+      fail(fmt::format("more than {} joints; this is not a motion capture file", kMaxBvhJoints));
     }
     expect("{", "after the joint's name");
     joint.offset = read_offset();
@@ -198,8 +198,8 @@ class BvhParser {
         }
         joint.first_channel = bvh_.channels;
         read_channels(joint);
-        // Columns follow the order of the CHANNELS lines; a joint whose
-        // children came first would be read against the frames' order.
+        // Columns follow the order of the CHANNELS lines; a joint whose children came first would
+        // be read against the order of the frames.
         if (open.back() + 1 != static_cast<int>(bvh_.joints.size())) {
           fail("CHANNELS must come before the joint's children");
         }
@@ -235,11 +235,11 @@ class BvhParser {
     if (frames != std::floor(frames) || frames < 1) {
       fail("the file holds no frames; Frames: must be a whole number above zero");
     }
-    // A value takes two bytes at least, which bounds what is allocated below.
+    // A value takes at least two bytes, which bounds what is allocated below.
     const double room = static_cast<double>(end_ - p_) / 2 + 1;
     if (frames * bvh_.channels > room) {
       fail(
-          fmt::format("Frames: says {}, but the file is too short for so many; it is truncated "
+          fmt::format("Frames: says {}, but the file is too short for that many; it is truncated "
                       "or the number is wrong",
                       frames));
     }
@@ -249,7 +249,7 @@ class BvhParser {
     bvh_.frame_time = read_number("Frame Time:");
     if (!(bvh_.frame_time >= 1e-5 && bvh_.frame_time <= 10)) {
       fail(
-          fmt::format("Frame Time: {} is no time between frames in seconds; 30 frames a second "
+          fmt::format("Frame Time: {} is not a time between frames in seconds; 30 frames a second "
                       "are 0.033333",
                       bvh_.frame_time));
     }
@@ -297,7 +297,7 @@ class BvhParser {
         fail(fmt::format("value {} of the frame is \"{}\", not a finite number", i + 1,
                          shown({p, static_cast<size_t>(last - p)})));
       }
-      if (!(std::abs(value) <= kMostBvhValue)) {
+      if (!(std::abs(value) <= kMaxBvhValue)) {
         fail(fmt::format("value {} of the frame is too large to be a motion", i + 1));
       }
       *out++ = static_cast<float>(value);
@@ -329,7 +329,7 @@ Bvh parse_bvh(std::string_view text, const std::string& path) {
 Bvh read_bvh(const std::string& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  if (!error && size > kMostBvhBytes) {
+  if (!error && size > kMaxBvhBytes) {
     throw FileError(path, 0, "is larger than 1 GiB; cut it into shorter clips");
   }
   const std::string text = read_file(path);

@@ -14,8 +14,8 @@ namespace {
 constexpr double kRigidMetres = 0.0005;
 constexpr int kIkPelvis = 0, kIkSpine1 = 3, kIkSpine2 = 6, kIkSpine3 = 9;
 
-/// T-pose offsets in the proportions of the human body, metres; only the
-/// directions matter, lengths come from the motion.
+/// T-pose offsets in the proportions of the human body, metres. Only the directions matter; the
+/// lengths come from the motion.
 const std::vector<Vec3>& natural_offsets() {
   static const std::vector<Vec3> offsets = {
       {0, 0, 0},          {0.07, -0.09, 0},    {-0.07, -0.09, 0},    {0, 0.11, -0.025},
@@ -140,8 +140,8 @@ std::vector<Quat> solve_frame(const Motion& motion, int frame, const std::vector
     reached[j] = parent < 0 || free[j] ? joint_position(motion, frame, static_cast<int>(j))
                                        : Vec3(reached[parent] + carried * rest[j]);
     if (children[j].size() == 1) {
-      // Aiming from where the joint came to lie keeps a bone that stretches
-      // from shifting the rest of the limb.
+      // Aiming from where the joint actually is keeps a stretching bone from shifting the rest of
+      // the limb.
       const int child = children[j][0];
       const Vec3 target = joint_position(motion, frame, child) - reached[j];
       world[j] = motion::shortest_arc(carried * rest[child], target) * carried;
@@ -201,7 +201,7 @@ Vec3 nearest_turns(Vec3 angles, const Vec3& before) {
   return angles;
 }
 
-/// The same rotation by the angles closest to those of the frame before.
+/// The same rotation by the angles closest to those of the previous frame.
 Vec3 unwrapped(const Vec3& angles, const Vec3& before) {
   const Vec3 first = nearest_turns(angles, before);
   const Vec3 other(angles[0] + M_PI, M_PI - angles[1], angles[2] + M_PI);

@@ -14,18 +14,17 @@ struct Pose22 {
   std::vector<Vec3> root;          ///< [frames] pelvis, metres
   std::vector<Quat> local;         ///< [frames][22] rotation of each joint relative to its parent
   /// [frames][22] translation of each joint in its parent's axes, metres: the
-  /// rest offset but for children of pelvis and spine3 in a clip that is not rigid there.
+  /// rest offset, except for children of pelvis and spine3 in a clip that is not rigid there.
   std::vector<Vec3> translations;
   bool rigid = true;  ///< all translations are the rest offsets
 };
 
-/// Closed-form inverse kinematics of the 22 joints. Joints with several
-/// children (pelvis, spine3) take the best rotation over them (Kabsch); their
-/// children's offsets are the clip's own rigid shape; where the clip departs from
-/// it by more than half a millimetre (other skeletons, generated motions), the
-/// children of these two joints carry translations, so that positions stay exact. Joints with one
-/// child take the shortest arc from the direction that their parent carries, hence no sudden
-/// twists; the twist between pelvis and spine3 is spread over the spine.
+/// Closed-form inverse kinematics of the 22 joints. Joints with several children (pelvis, spine3)
+/// take the best rotation over them (Kabsch), and their children's offsets are the clip's own rigid
+/// shape. Where the clip departs from that shape by more than half a millimetre (other skeletons,
+/// generated motions), the children of these two joints carry translations, so that positions stay
+/// exact. Joints with one child take the shortest arc from the direction that their parent carries,
+/// which avoids sudden twists; the twist between pelvis and spine3 is spread over the spine.
 Pose22 solve_pose(const Motion& motion);
 
 /// The motion as a BVH file in centimetres at 20 fps: 22 joints "Hips",

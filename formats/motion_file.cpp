@@ -29,7 +29,7 @@ void check_options(const MotionFileOptions& options) {
   }
   if (options.up_axis && *options.up_axis != 'X' && *options.up_axis != 'Y' &&
       *options.up_axis != 'Z') {
-    throw Error(std::string("the up axis is X, Y or Z, not \"") + *options.up_axis + "\"");
+    throw Error(std::string("the up axis must be X, Y or Z, not \"") + *options.up_axis + "\"");
   }
   if (options.skip_frames < 0) throw Error("the number of frames to skip cannot be negative");
 }
@@ -55,7 +55,7 @@ Motion skip_first(const Motion& motion, int skip) {
   return skip == 0 ? motion : slice(motion, skip, motion.frames);
 }
 
-/// Raw positions at the source's rate -> 20 fps, metres, Y up; canonical where asked for.
+/// Converts raw positions at the source's rate to 20 fps, metres and Y up; canonical if requested.
 void bring_to_metres(Motion raw, const Motion* rest_pose, const MotionFileOptions& options,
                      LoadedMotion& loaded) {
   loaded.source_frames = raw.frames;
@@ -131,7 +131,7 @@ LoadedMotion load_motion(const std::string& path, const MotionFileOptions& optio
   } catch (const Error& error) {
     throw FileError(path, 0, error.what());
   }
-  throw FileError(path, 0, "is not a known kind of file; motions are read from .bvh and .npy");
+  throw FileError(path, 0, "is not of a known file type; motions are read from .bvh and .npy");
 }
 
 void save_motion(const std::string& path, const Motion& motion) {

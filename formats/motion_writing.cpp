@@ -23,7 +23,7 @@ std::string motion_bytes(const std::string& path, const Motion& motion) {
   if (extension == ".npy") {
     return format_npy({{static_cast<size_t>(motion.frames), kWrittenJoints, 3}, motion.positions});
   }
-  throw FileError(path, 0, "is not a known kind of file; motions are written as .bvh or .npy");
+  throw FileError(path, 0, "is not of a known file type; motions are written as .bvh or .npy");
 }
 
 }  // namespace

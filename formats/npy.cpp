@@ -13,7 +13,7 @@ namespace remomask::formats {
 
 namespace {
 
-constexpr size_t kMostNpyHeader = 1 << 16;
+constexpr size_t kMaxNpyHeader = 1 << 16;
 
 struct NpyHeader {
   std::string text;
@@ -36,8 +36,8 @@ NpyHeader read_npy_header(std::string_view content, const std::string& path) {
     }
   }
   const size_t start = 8 + size_bytes;
-  if (length == 0 || length > kMostNpyHeader || start + length > content.size()) {
-    throw FileError(path, 0, "the .npy header is cut off; copy or save the file again");
+  if (length == 0 || length > kMaxNpyHeader || start + length > content.size()) {
+    throw FileError(path, 0, "the .npy header is truncated; copy or save the file again");
   }
   return {std::string(content.substr(start, length)), start + length};
 }
@@ -56,7 +56,9 @@ std::vector<size_t> npy_shape(const std::string& text, const std::string& path) 
   const std::regex number("[0-9]+");
   for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) {
     if (it->length() > 12 || shape.size() == 8) {
-      throw FileError(path, 0, "the .npy shape (" + text.substr(0, 80) + ") is absurd");
+      throw FileError(
+          path, 0,
+          "the .npy shape (" + text.substr(0, 80) + ") is not plausible; save the file again");
     }
     shape.push_back(std::stoull(it->str()));
   }

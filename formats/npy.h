@@ -6,14 +6,14 @@
 
 namespace remomask::formats {
 
-/// A NumPy array of float32 or float64, brought to float32 in C order.
+/// A NumPy array of float32 or float64, converted to float32 in C order.
 struct NpyArray {
   std::vector<size_t> shape;
   std::vector<float> values;
 };
 
-/// Reads a .npy file (format 1, 2 or 3; little-endian f4 or f8; C or Fortran
-/// order). Throws FileError for anything else, and where the data is short.
+/// Reads a .npy file (format 1, 2 or 3; little-endian f4 or f8; C or Fortran order). Throws
+/// FileError for anything else and for missing data.
 NpyArray read_npy(const std::string& path);
 NpyArray parse_npy(std::string_view content, const std::string& path);
 

@@ -120,7 +120,7 @@ std::vector<SkeletonMap> parse_skeleton_maps(const std::string& text, const std:
   } catch (const std::exception& error) {
     throw FileError(path, 0,
                     std::string("is not a skeleton map: ") + error.what() +
-                        "; see motion/skeleton_maps.json for the form");
+                        "; see formats/skeleton_maps.json for the form");
   }
 }
 
@@ -155,7 +155,7 @@ const SkeletonMap& find_skeleton_map(const std::vector<SkeletonMap>& maps, const
   throw FileError(path, 0,
                   fmt::format("no known skeleton has these joint names; the closest, \"{}\", "
                               "misses {}. Write a map file in the form of "
-                              "motion/skeleton_maps.json and name it as the skeleton map",
+                              "formats/skeleton_maps.json and name it as the skeleton map",
                               closest->name, fmt::join(fewest_missing, ", ")));
 }
 

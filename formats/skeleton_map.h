@@ -30,16 +30,16 @@ struct SkeletonMap {
 /// Throws FileError; `path` also names a bare map.
 std::vector<SkeletonMap> parse_skeleton_maps(const std::string& json, const std::string& path);
 
-/// The maps that the program knows.
+/// The maps that are built in.
 const std::vector<SkeletonMap>& shipped_skeleton_maps();
 
-/// The map whose joints all exist in `bvh`; of several, the one that names most
-/// joints. A common prefix as in "mixamorig:Hips" is overlooked. Throws
-/// FileError (naming `path`) with what the closest map misses.
+/// The map whose joints all exist in `bvh`; if there are several, the one that names the most
+/// joints. A common prefix as in "mixamorig:Hips" is ignored. Throws FileError (naming `path`) with
+/// what the closest map misses.
 const SkeletonMap& find_skeleton_map(const std::vector<SkeletonMap>& maps, const Bvh& bvh,
                                      const std::string& path);
 
-/// Computes the 22 joints of a BVH file by a map that fits.
+/// Computes the 22 joints of a BVH file by a map that fits it.
 class MappedKinematics {
  public:
   MappedKinematics(const Bvh& bvh, const SkeletonMap& map);

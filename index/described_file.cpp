@@ -56,7 +56,7 @@ DescribedContent split_described(const std::string& path, std::string_view conte
                                  std::string_view magic, const std::string& remedy) try {
   const size_t end = sizeof(uint64_t) + magic.size();
   if (content.size() < end || !content.ends_with(magic)) {
-    throw FileError(path, 0, "is no file of an index, or is cut off; " + remedy);
+    throw FileError(path, 0, "is not an index file, or is truncated; " + remedy);
   }
   uint64_t length = 0;
   std::memcpy(&length, content.data() + content.size() - end, sizeof length);
@@ -71,7 +71,7 @@ DescribedContent split_described(const std::string& path, std::string_view conte
   if (version > kIndexFormat) {
     throw FileError(path, 0, "was made by a newer version of remomask; " + remedy);
   }
-  if (version == 1) return parts;  // the first format had no checksum here
+  if (version == 1) return parts;  // the first format has no checksum here
   const std::string checksum = parts.description.value(kDescriptionChecksum, "");
   parts.description.erase(kDescriptionChecksum);
   if (checksum != content_hash(parts.description.dump())) throw damaged;

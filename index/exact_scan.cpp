@@ -14,22 +14,21 @@ namespace remomask::index {
 
 namespace {
 
-// Debian's FAISS has SSE2 code only and does not thread single queries, so it
-// reads memory 4 to 10 times slower than BLAS does. BLAS in turn rounds
-// differently by kernel, thread and position in a block, which would break ties
-// between equal vectors at random. Hence two steps: BLAS finds every row that
-// can be among the best within its error bound, then those few are summed again
-// in one fixed order.
+// Debian's FAISS has SSE2 code only and does not thread single queries, so it reads memory 4 to 10
+// times slower than BLAS. BLAS in turn rounds differently by kernel, thread and position in a
+// block, which would break ties between equal vectors at random. Hence two steps: BLAS finds every
+// row that can be among the best within its error bound, then those few are summed again in one
+// fixed order.
 
-constexpr int64_t kMostQueries = 256;              // of one matrix product
-constexpr int64_t kMostScores = int64_t{1} << 17;  // stay in the cache between product and choice
-constexpr int64_t kGatheredRows = 4096;            // stay in the cache between copy and product
+constexpr int64_t kMaxQueries = 256;              // of one matrix product
+constexpr int64_t kMaxScores = int64_t{1} << 17;  // stay in the cache between product and choice
+constexpr int64_t kGatheredRows = 4096;           // stay in the cache between copy and product
 constexpr size_t kFirstLimit = 1024;
 constexpr int64_t kScoresAtOnce = 32;  // compared with the threshold by vector instructions
 constexpr double kNormTolerance = 1e-3;
 
-/// Twice the bound |fl(x.y) - x.y| <= width * u * |x||y| of any order of
-/// summation, for norms up to 1.01, and the final rounding.
+/// Twice the bound |fl(x.y) - x.y| <= width * u * |x||y|, which holds for any order of summation
+/// and norms up to 1.01, plus the final rounding.
 float score_margin(int width) { return 1.1f * (static_cast<float>(width) + 2) * FLT_EPSILON; }
 
 float exact_score(const float* left, const float* right, int width) {
@@ -49,8 +48,8 @@ class Candidates {
     limit_ = std::max(kFirstLimit, 2 * k_);
   }
 
-  /// Scores of the rows first, first + 1, ..., or, with `choice.rows`, of those
-  /// at the places first, first + 1, ... of that list.
+  /// Scores of the rows first, first + 1, ... or, with `choice.rows`, of the rows at these
+  /// positions of that list.
   void offer(const float* scores, int64_t count, int64_t first, const RowChoice& choice) {
     int64_t i = 0;
     for (; i + kScoresAtOnce <= count; i += kScoresAtOnce) {
@@ -93,7 +92,7 @@ class Candidates {
     std::nth_element(found_.begin(), last, found_.end(), better_score);
     threshold_ = last->score - margin_;
     std::erase_if(found_, [this](const RowScore& row) { return row.score < threshold_; });
-    // Many equal vectors: prune more rarely, or the scan would be quadratic.
+    // With many equal vectors, prune less often, or the scan would be quadratic.
     limit_ = std::max(limit_, 2 * found_.size());
   }
 
@@ -127,8 +126,8 @@ std::vector<std::vector<RowScore>> exact_top_k(const float* vectors, int64_t cou
   std::vector<std::vector<RowScore>> results(static_cast<size_t>(query_count));
   if (k <= 0 || query_count == 0) return results;
 
-  const int64_t batch = std::min(query_count, kMostQueries);
-  const int64_t block = std::min(available, rows ? kGatheredRows : kMostScores / batch);
+  const int64_t batch = std::min(query_count, kMaxQueries);
+  const int64_t block = std::min(available, rows ? kGatheredRows : kMaxScores / batch);
   std::vector<float> scores(static_cast<size_t>(batch * block));
   std::vector<float> gathered(rows ? static_cast<size_t>(block * width) : 0);
 

@@ -15,18 +15,18 @@ namespace remomask::index {
 
 namespace {
 
-constexpr int64_t kLeastCountOfLists = 500000;
+constexpr int64_t kMinCountOfLists = 500000;
 constexpr int64_t kRowsPerAddition = 8192;
-constexpr int kPointsPerCentroid = 64;  // more of them cost minutes and gain nothing measurable
+constexpr int kPointsPerCentroid = 64;  // more cost minutes and gain nothing measurable
 
 std::unique_ptr<faiss::Index> make_faiss_index(int width, const std::string& factory) {
   std::unique_ptr<faiss::Index> index(
       faiss::index_factory(width, factory.c_str(), faiss::METRIC_INNER_PRODUCT));
   if (dynamic_cast<faiss::IndexIDMap*>(index.get())) {
-    throw Error("the index type '" + factory + "' maps ids itself; leave IDMap away");
+    throw Error("the index type \"" + factory + "\" maps ids itself; remove IDMap from it");
   }
   if (auto* lists = dynamic_cast<faiss::IndexIVF*>(index.get())) {
-    // FAISS writes a warning to stderr below this number; libraries never print.
+    // FAISS prints a warning to stderr below this number, and libraries must not print.
     lists->cp.min_points_per_centroid = 1;
     lists->cp.max_points_per_centroid = kPointsPerCentroid;
   }
@@ -37,7 +37,7 @@ std::unique_ptr<faiss::Index> make_faiss_index(int width, const std::string& fac
 
 std::string resolve_factory(const std::string& requested, int64_t count) {
   if (requested != "auto") return requested;
-  if (count < kLeastCountOfLists) return "Flat";
+  if (count < kMinCountOfLists) return "Flat";
   const double exponent = std::round(std::log2(2 * std::sqrt(static_cast<double>(count))));
   return fmt::format("IVF{},Flat", 1 << std::clamp(static_cast<int>(exponent), 10, 14));
 }
@@ -67,7 +67,7 @@ std::unique_ptr<faiss::IndexIDMap2> build_faiss_index(const std::vector<int64_t>
     return index;
   } catch (const faiss::FaissException& error) {
     throw Error(fmt::format(
-        "FAISS cannot build an index of type '{}' with parameters '{}' over {} vectors ({}); "
+        "FAISS cannot build an index of type \"{}\" with parameters \"{}\" over {} vectors ({}); "
         "use another type, or Flat",
         type.factory, type.search_parameters, ids.size(), error.what()));
   }

@@ -64,7 +64,7 @@ Ids merged_ids(const Ids& left, const Ids& right) {
   return result;
 }
 
-/// Among others, those whose vectors came or went since the stamp.
+/// Among others, the clips whose vectors were added or removed since the stamp.
 db::EmbeddingChanges changed_clips(const db::Database& database, const IndexStamp& stamp,
                                    const Ids& former) {
   auto logged = database.embedding_changes(stamp.retriever_hash, stamp.generation);
@@ -128,22 +128,21 @@ void require_same_origin(const std::string& path, const IndexStamp& stamp,
                 " instead of " + retriever_hash + "); run: remomask index DB");
   }
   if (stamp.database_uuid != database.uuid()) {
-    throw Error(path + ": this index belongs to another database than " + database.path() +
+    throw Error(path + ": this index does not belong to the database " + database.path() +
                 "; run: remomask index DB");
   }
-  // The caller's snapshot may be older than a file that was just written: what
-  // counts is the latest state.
+  // The caller's snapshot may be older than a file that was just written; the latest state counts.
   std::optional<db::Database> latest;
   if (stamp.generation > database.generation())
     latest.emplace(database.path(), db::OpenMode::read_only);
   const db::Database& reached = latest ? *latest : database;
   if (stamp.generation > reached.generation()) {
-    throw Error(path + ": this index is of a later state than " + database.path() +
-                " (is that an older copy?); run: remomask index DB");
+    throw Error(path + ": this index belongs to a later state of " + database.path() +
+                " (is this an older copy?); run: remomask index DB");
   }
   if (stamp.writer != reached.writer_of(stamp.generation)) {
-    throw Error(path + ": this index is of a copy of " + database.path() +
-                " that was changed apart from it; run: remomask index DB");
+    throw Error(path + ": this index belongs to a copy of " + database.path() +
+                " that was changed separately; run: remomask index DB");
   }
 }
 
@@ -201,7 +200,7 @@ void write_index_delta(const std::string& path, const IndexHeader& base, const I
                                       {"writer", delta.stamp.writer},
                                       {"checksum", content_hash(body)}};
   body += describe(description, kDeltaMagic);
-  // Not waiting for the disk: the database's own last commits do not either.
+  // Does not wait for the disk, since the database's last commits do not, either.
   write_file_atomically(delta_path(path), body, Durability::kills);
 }
 

@@ -48,7 +48,7 @@ std::unique_ptr<Wanted> read_faiss(std::string_view data, const std::string& pat
   std::unique_ptr<faiss::Index> index(faiss::read_index(&reader));
   auto* wanted = dynamic_cast<Wanted*>(index.get());
   if (!wanted) {
-    throw FileError(path, 0, std::string("holds another type of index; ") + kRebuild);
+    throw FileError(path, 0, std::string("holds an index of another type; ") + kRebuild);
   }
   index.release();
   return std::unique_ptr<Wanted>(wanted);
@@ -104,7 +104,7 @@ IndexParts split_index_file(const std::string& path, std::string_view content) {
   return result;
 }
 
-/// What FAISS and the JSON library throw becomes a FileError.
+/// Turns exceptions of FAISS and the JSON library into FileError.
 template <typename Read>
 auto reading(const std::string& path, const Read& read) {
   if (!std::filesystem::exists(path)) {
@@ -130,7 +130,7 @@ class PieceWriter {
     StreamWriter writer(stream_);
     try {
       faiss::write_index(&index, &writer);
-    } catch (const std::exception&) {  // FAISS lacks the reason: the stream has it
+    } catch (const std::exception&) {  // FAISS does not know the reason; the stream does
       stream_.setstate(std::ios::failbit);
     }
     return flush();

@@ -25,20 +25,19 @@ struct IndexHeader {
 struct IndexFile {
   IndexHeader header;
   std::unique_ptr<faiss::IndexIDMap2> index;
-  std::unique_ptr<faiss::IndexFlat> exact;  ///< null when `index` holds a Flat itself
+  std::unique_ptr<faiss::IndexFlat> exact;  ///< null if `index` is a Flat itself
 };
 
-/// Writes atomically, returns the checksum. Throws FileError.
+/// Writes the file atomically and returns the checksum. Throws FileError.
 std::string write_index_file(const std::string& path, const IndexStamp& stamp,
                              const IndexType& type, const faiss::IndexIDMap2& index,
                              const faiss::IndexFlat* exact);
 
-/// Throws FileError when the file is missing, cut off, damaged or made by a
-/// newer program.
+/// Throws FileError if the file is missing, truncated, damaged or made by a newer program.
 IndexFile read_index_file(const std::string& path);
 
-/// The same without the vectors, which are neither read nor checked: takes
-/// milliseconds for any size.
+/// The same without the vectors, which are neither read nor checked: takes milliseconds for any
+/// size.
 IndexHeader read_index_header(const std::string& path);
 
 }  // namespace remomask::index

@@ -116,7 +116,7 @@ HitLists IndexSegments::search_exactly(const float* queries, int64_t query_count
                     scan_added(queries, query_count, k, &added_rows), k);
 }
 
-/// The rows of the base that its type finds, less the dropped ones, ascending.
+/// The rows of the base that its type finds, without the dropped ones, ascending.
 std::vector<std::vector<int64_t>> IndexSegments::find_rows(const float* queries,
                                                            int64_t query_count,
                                                            int64_t fetched) const {
@@ -138,7 +138,7 @@ HitLists IndexSegments::search_approximately(const float* queries, int64_t query
                                              int64_t k) const {
   const auto live = base_->ntotal - static_cast<int64_t>(changes_.dropped.size());
   const auto wanted = static_cast<size_t>(std::min(k, live));
-  // Some more, since dropped rows are found too.
+  // Asks for some more, since dropped rows are found as well.
   int64_t fetched = std::min(base_->ntotal, changes_.dropped.empty() ? k : 2 * k);
   auto rows = find_rows(queries, query_count, fetched);
   HitLists hits;
@@ -148,7 +148,7 @@ HitLists IndexSegments::search_approximately(const float* queries, int64_t query
     for (int64_t more = 4 * fetched; found.size() < wanted && more <= 64 * fetched; more *= 4) {
       found = std::move(find_rows(vector, 1, std::min(more, base_->ntotal)).front());
     }
-    // The type finds no more, whether for the dropped rows or for its own limits.
+    // The type finds no more, because of the dropped rows or its own limits.
     const bool enough = found.size() >= wanted;
     hits.push_back(std::move(scan_base(vector, 1, k, enough ? &found : nullptr).front()));
   }

@@ -12,16 +12,16 @@
 
 namespace remomask::index {
 
-/// What a VectorIndex searches: the base, less its dropped rows, and the added
-/// vectors. These are always scanned exactly, so every type of base follows a
-/// database, also those that cannot remove (HNSW).
+/// What a VectorIndex searches: the base without its dropped rows, and the added vectors. The
+/// latter are always scanned exactly, so every type of base can follow a database, even those that
+/// cannot remove vectors (HNSW).
 class IndexSegments {
  public:
-  /// The rows of `base` are ascending by id; `exact` has the same rows, null
-  /// when the base is a Flat itself.
+  /// The rows of `base` are in ascending order of id. `exact` has the same rows; it is null if the
+  /// base is a Flat itself.
   IndexSegments(std::unique_ptr<faiss::IndexIDMap2> base, std::unique_ptr<faiss::IndexFlat> exact);
 
-  /// `ids`: of everything that is present after these changes, ascending.
+  /// `ids`: everything that is present after these changes, ascending.
   void set_changes(IndexChanges changes, std::vector<int64_t> ids);
 
   bool is_exact() const { return exact_ == nullptr; }
@@ -39,7 +39,7 @@ class IndexSegments {
   std::vector<std::vector<VectorHit>> search_exactly(const float* queries, int64_t query_count,
                                                      int64_t k,
                                                      const std::vector<int64_t>* allowed) const;
-  /// The base by its own type, all else exactly.
+  /// Searches the base by its own type and everything else exactly.
   std::vector<std::vector<VectorHit>> search_approximately(const float* queries,
                                                            int64_t query_count, int64_t k) const;
 

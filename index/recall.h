@@ -7,10 +7,10 @@
 
 namespace remomask::index {
 
-/// Stored vectors as queries, with their true ten nearest among the others.
+/// Stored vectors as queries, with their true ten nearest neighbours.
 class RecallSample {
  public:
-  /// 100 rows, evenly spread; fewer of a smaller index.
+  /// Takes 100 rows, evenly spread, or all rows of a smaller index.
   explicit RecallSample(const IndexSegments& segments);
 
   /// Share of the true ten that an approximate search finds, 0 .. 1.
@@ -22,8 +22,8 @@ class RecallSample {
   std::vector<std::vector<VectorHit>> truth_;  ///< without the query itself
 };
 
-/// Sets the number of lists that an IVF index visits to the least power of two
-/// with a recall of 0.97, and returns it as a search parameter; "" for other types.
+/// Sets the number of lists that an IVF index visits to the smallest power of two with a recall of
+/// 0.97 and returns it as a search parameter; "" for other types.
 std::string tune_probes(IndexSegments& segments, const RecallSample& sample);
 
 }  // namespace remomask::index

@@ -18,8 +18,8 @@ struct IndexPair {
   IndexDelta delta;
 };
 
-/// The pair, or why it cannot be continued. A damaged delta alone costs nothing:
-/// the base without it is an older state.
+/// The pair, or why it cannot be continued. A damaged delta costs nothing: the base without it is
+/// an older state.
 std::pair<std::optional<IndexPair>, std::string> read_pair(const std::string& path,
                                                            const db::Database& database,
                                                            const std::string& retriever_hash) {
@@ -52,7 +52,7 @@ bool same_type(const IndexType& type, const VectorIndexOptions& options) {
 IndexUpdate update_index(const std::string& path, const db::Database& database,
                          const std::string& retriever_hash, const UpdateOptions& options,
                          const Monitor& monitor) {
-  // Before the snapshot: what is written must not be older than what was there.
+  // Read before the snapshot: what is written must not be older than what was there.
   auto [pair, reason] = read_pair(path, database, retriever_hash);
   const db::ReadSnapshot snapshot(database);
   VectorIndexOptions type = options.type.value_or(VectorIndexOptions{});

@@ -38,7 +38,7 @@ void sort_by_id(std::vector<int64_t>& ids, std::vector<float>& vectors, int widt
 bool holds_base(const std::string& path, const std::string& checksum) {
   try {
     return read_index_header(path).checksum == checksum;
-  } catch (const FileError&) {  // removed or damaged meanwhile: written anew
+  } catch (const FileError&) {  // removed or damaged in the meantime: rewritten
     return false;
   }
 }
@@ -156,10 +156,11 @@ void VectorIndex::save(const std::string& path) {
   if (beside_its_base && (count() == 0 || !worth_folding(impl_->base, segments.changes()))) {
     return write_index_delta(path, impl_->base, {stamp(), segments.changes()});
   }
-  if (count() == 0) throw Error(path + ": an index without clips is not written; embed some first");
+  if (count() == 0)
+    throw Error(path + ": an index without clips cannot be written; embed some clips first");
   if (!segments.changes().empty()) {
     const IndexType type = impl_->base.type;
-    // A number of probes that "auto" chose is chosen again.
+    // A number of probes that "auto" chose is chosen anew.
     const VectorIndexOptions options{type.requested,
                                      type.requested == "auto" ? "" : type.search_parameters};
     impl_ = Impl::build(stamp(), segments.ids(), segments.vectors_of(segments.ids()).data(),
@@ -185,7 +186,7 @@ void VectorIndex::require_current(const db::Database& database) const {
 std::vector<std::vector<VectorHit>> VectorIndex::search(const float* queries, int64_t query_count,
                                                         int64_t k,
                                                         const std::vector<int64_t>* allowed) const {
-  if (k < 1) throw Error("a search returns at least one clip; ask for k of 1 or more");
+  if (k < 1) throw Error("k must be 1 or more");
   for (int64_t i = 0; i < query_count; ++i) {
     require_unit_length(queries + i * width(), width(), fmt::format("query {}", i));
   }

@@ -13,7 +13,7 @@ namespace remomask::index {
 
 namespace {
 
-// A row is [global / sqrt 2 | parts / sqrt 12] where it has parts: of length 1.
+// A row is [global / sqrt 2 | parts / sqrt 12] if it has parts, so that its length is 1.
 const double kBodyGlobalScale = std::sqrt(2.0);
 const double kBodyPartScale = std::sqrt(2.0 * motion::kBodyParts);
 
@@ -70,7 +70,7 @@ std::vector<VectorHit> VectorTable::nearest(const LinearQuery& query, int64_t k,
   for (const float value : query.parts) scaled.push_back(value * kBodyPartScale);
   double square = 0;
   for (const double value : scaled) square += value * value;
-  // A query of length 0 is equally far from all; any divisor will do.
+  // A query of length 0 is equally far from everything, so any divisor will do.
   const double length = square > 0 ? std::sqrt(square) : 1;
   std::vector<float> unit;
   for (const double value : scaled) unit.push_back(static_cast<float>(value / length));

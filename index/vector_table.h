@@ -19,13 +19,13 @@ struct LinearQuery {
 /// Vectors of clips for exact scans of what the index does not hold.
 class VectorTable {
  public:
-  /// Rows [motion | six parts] of the clips. Throws Error when the widths differ.
+  /// One row [motion | six parts] for each clip. Throws Error if the widths differ.
   static VectorTable of_bodies(const std::vector<db::ClipEmbedding>& embeddings);
   /// Text vectors of the clips that have captions.
   static VectorTable of_captions(const std::vector<db::ClipEmbedding>& embeddings);
 
-  /// The k best clips, best first, equal similarities by clip id; `allowed` (clip
-  /// ids, ascending) limits the scan. Similarities are sums in double, rounded.
+  /// The `k` best clips, best first, equal similarities by clip id; `allowed` (clip ids, ascending)
+  /// limits the scan. Similarities are summed in double and rounded.
   std::vector<VectorHit> nearest(const LinearQuery& query, int64_t k,
                                  const std::vector<int64_t>* allowed = nullptr) const;
 
@@ -38,7 +38,7 @@ class VectorTable {
 
   int global_width_ = 0, parts_width_ = 0;
   std::vector<int64_t> ids_;
-  std::vector<float> rows_;  ///< each scaled to length 1, as the exact scan wants
+  std::vector<float> rows_;  ///< each scaled to length 1, as the exact scan requires
 };
 
 }  // namespace remomask::index

@@ -1,6 +1,8 @@
 #include "kinematics/foot_anchor.h"
 #include "motion/vector.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,8 +14,7 @@ namespace {
 
 constexpr int kLongestGap = 1, kShortestContact = 3;
 
-/// Turns runs of `value` of at most `longest` frames over; runs at the ends stay
-/// where `keep_ends`.
+/// Inverts runs of `value` of at most `longest` frames; with `keep_ends`, runs at the ends stay.
 void turn_short_runs(FootContacts& contacts, size_t foot, bool value, int longest, bool keep_ends) {
   const int frames = static_cast<int>(contacts.size());
   for (int first = 0; first < frames;) {
@@ -31,8 +32,8 @@ void turn_short_runs(FootContacts& contacts, size_t foot, bool value, int longes
 
 FootContacts read_contacts(const motion::Features& features, const Skeleton& skeleton) {
   if (features.dim != skeleton.feature_dim()) {
-    throw Error("features of " + std::to_string(features.dim) + " columns have no contacts of \"" +
-                skeleton.name + "\"");
+    throw Error(fmt::format("features of {} columns do not fit the skeleton \"{}\", which has {}",
+                            features.dim, skeleton.name, skeleton.feature_dim()));
   }
   FootContacts contacts(static_cast<size_t>(features.frames));
   for (int t = 0; t < features.frames; ++t) {
@@ -50,8 +51,8 @@ FootContacts read_contacts(const motion::Features& features, const Skeleton& ske
 void anchor_to_feet(Motion& motion, const FootContacts& contacts, const Skeleton& skeleton,
                     double fastest) {
   if (static_cast<int>(contacts.size()) != motion.frames) {
-    throw Error("there are contacts for " + std::to_string(contacts.size()) + " frames, not for " +
-                std::to_string(motion.frames));
+    throw Error(fmt::format("there are contacts for {} frames, the motion has {}", contacts.size(),
+                            motion.frames));
   }
   const std::array<int, 2> toes = {skeleton.left_feet.back(), skeleton.right_feet.back()};
   const auto frames = static_cast<size_t>(motion.frames);

@@ -7,20 +7,18 @@
 
 namespace remomask::kinematics {
 
-/// For every frame, whether the left and the right foot stand.
+/// Whether the left and the right foot stand, for every frame.
 using FootContacts = std::vector<std::array<bool, 2>>;
 
-/// Contacts as the features say them: a foot stands where the channel of its toe
-/// is above one half. Gaps of one frame are closed, then contacts of fewer than
-/// three frames are left out.
+/// Reads contacts from features: a foot stands where the channel of its toe is above one half. Gaps
+/// of one frame are closed, then contacts shorter than three frames are dropped.
 FootContacts read_contacts(const motion::Features& features, const Skeleton& skeleton);
 
-/// Moves the whole body over the ground so that standing feet do not slide: what
-/// they slide on average from frame to frame is taken out of the root's path, from
-/// the first frame on, smoothed over three frames. A foot that slides at more than
-/// half of `fastest` (m/s) counts less, from `fastest` on nothing: such a body is on
-/// its way, and holding its feet would stop it. Heights and poses stay. Throws Error
-/// unless there are contacts for every frame.
+/// Moves the whole body over the ground so that standing feet do not slide. The mean slide of the
+/// standing feet from each frame to the next is subtracted from the root's path, from the first
+/// frame on, smoothed over three frames. A foot that slides faster than half of `fastest` (m/s)
+/// counts less, and not at all from `fastest` on: such a body is travelling, and holding its feet
+/// would stop it. Heights and poses stay. Throws Error unless there are contacts for every frame.
 void anchor_to_feet(Motion& motion, const FootContacts& contacts, const Skeleton& skeleton,
                     double fastest = 1);
 

@@ -17,7 +17,7 @@ double ground_speed(const Motion& motion, int t, int joint, double fps) {
   return std::hypot(step.x(), step.z()) * fps;
 }
 
-/// The body's speed around every frame: mean over one second.
+/// Speed of the body around every frame: the mean over one second.
 std::vector<double> body_speed(const Motion& motion, double fps) {
   const int steps = motion.frames - 1, reach = static_cast<int>(fps / 2);
   std::vector<double> speed(static_cast<size_t>(motion.frames));
@@ -30,12 +30,12 @@ std::vector<double> body_speed(const Motion& motion, double fps) {
   return speed;
 }
 
-/// Stretches of frames that a fast step of the toe begins or ends in.
+/// Stretches of frames at which a fast step of the toe begins or ends.
 std::vector<motion::FrameRun> swings_of(const Motion& motion, int toe, double fps,
-                                        double least_speed) {
+                                        double min_speed) {
   std::vector<motion::FrameRun> swings;
   for (int t = 0; t + 1 < motion.frames; ++t) {
-    if (ground_speed(motion, t, toe, fps) <= least_speed) continue;
+    if (ground_speed(motion, t, toe, fps) <= min_speed) continue;
     if (swings.empty() || swings.back().last <= t) swings.push_back({t, t});
     swings.back().last = t + 2;
   }
@@ -48,7 +48,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// By how much the swing is to be raised.
+/// How far the swing is to be raised.
 double missing_height(const Motion& motion, const motion::FrameRun& swing, int toe,
                       const std::vector<double>& body, const FootClearanceOptions& options) {
   std::vector<double> heights;
@@ -57,11 +57,11 @@ double missing_height(const Motion& motion, const motion::FrameRun& swing, int t
     heights.push_back(joint_position(motion, t, toe).y());
     speed += body[static_cast<size_t>(t)] / (swing.last - swing.first);
   }
-  return std::clamp(options.height * speed - median(heights), 0.0, options.most);
+  return std::clamp(options.height * speed - median(heights), 0.0, options.max_raise);
 }
 
-/// 0 just outside of the swing, 1 from `fade` frames in it on; nothing fades at the ends of
-/// the motion.
+/// 0 just outside the swing, 1 from `fade` frames inside it on. Nothing fades at the ends of the
+/// motion.
 double swing_weight(const Motion& motion, const motion::FrameRun& swing, int t, int fade) {
   int distance = fade;
   if (swing.first > 0) distance = std::min(distance, t - swing.first);

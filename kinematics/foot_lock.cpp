@@ -16,7 +16,7 @@ double fade_weight(int distance, int fade) {
   return u * u * (3 - 2 * u);
 }
 
-/// Does the toe stand between frames t and t+1 (or t-1 and t at the end)?
+/// Whether the toe stands between frames t and t + 1 (t - 1 and t at the end).
 bool stands(const Motion& motion, int t, int toe, double floor, double fps,
             const FootLockOptions& options) {
   if (motion.frames < 2) return false;
@@ -55,7 +55,7 @@ class LegLock {
     return steps;
   }
 
-  /// How far each standing frame is to be moved over the ground, and the fades.
+  /// How far each standing frame is moved over the ground, and the fades.
   std::vector<Vec3> shifts_of(const motion::FrameRun& run) const {
     const auto count = static_cast<size_t>(run.last - run.first);
     std::vector<Vec3> shifts(count, Vec3::Zero());
@@ -77,12 +77,12 @@ class LegLock {
         place.y() = 0;
         return place;
       };
-      // Outside, the nearer end of the step is what fades.
+      // Outside the step, its nearer end fades out.
       for (int t = std::max(run.first, step.first - options_.fade);
            t < std::min(run.last, step.last + options_.fade); ++t) {
         const int nearest = std::clamp(t, step.first, step.last - 1);
         const double weight = fade_weight(std::abs(t - nearest), options_.fade);
-        // Next to frames that stay, other corrections begin from nothing.
+        // Next to frames that stay, other corrections start from zero.
         const double first =
             from_before || run.first == 0 ? 1 : 1 - fade_weight(t - run.first + 1, options_.fade);
         const double last = to_after || run.last == motion_.frames

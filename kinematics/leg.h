@@ -13,13 +13,12 @@ struct Leg {
   double upper = 0, lower = 0;
 };
 
-/// The leg that ends in `feet` (ankle first, toe last, as in Skeleton), its bones as
-/// long as they are in frame `frame` of `motion`.
+/// The leg that ends in `feet` (ankle first, toe last, as in Skeleton), with the bone lengths of
+/// frame `frame` of `motion`.
 Leg leg_of(const std::vector<int>& feet, const Skeleton& skeleton, const Motion& motion, int frame);
 
-/// Moves the foot of one frame by `shift`: the knee follows by two-bone inverse
-/// kinematics (bone lengths stay), ankle and toe keep their direction. A shift out
-/// of reach is shortened.
+/// Moves the foot of one frame by `shift`. The knee follows by two-bone inverse kinematics, so bone
+/// lengths stay; ankle and toe keep their direction. A shift out of reach is shortened.
 void move_foot(Motion& motion, int frame, const Leg& leg, const Vec3& shift);
 
 }  // namespace remomask::kinematics

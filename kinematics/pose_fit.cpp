@@ -40,7 +40,7 @@ TiedJoints find_tied(const std::vector<bool>& free, const std::vector<double>& l
   return result;
 }
 
-/// Moves the tied joints the least way onto the length constraints.
+/// Moves the tied joints by the shortest way onto the length constraints.
 bool satisfy_lengths(const TiedJoints& tied, std::vector<Vec3>& pose) {
   const auto rows = static_cast<Eigen::Index>(tied.bones.size());
   const auto columns = static_cast<Eigen::Index>(tied.joints.size() * 3);

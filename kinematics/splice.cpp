@@ -1,6 +1,8 @@
 #include "kinematics/splice.h"
 #include "motion/vector.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,11 +17,11 @@ namespace remomask::kinematics {
 
 namespace {
 
-/// Adds to a stretch what lets it begin, or end, with the value and the change
-/// of the frames that stay: offset and slope fade to nothing (cubic Hermite).
+/// Makes a stretch begin, or end, with the value and the slope of the frames that stay: offset and
+/// slope fade to zero (cubic Hermite).
 struct EdgeOffset {
   Vec3 value = Vec3::Zero();  ///< at the frame that stays
-  Vec3 slope = Vec3::Zero();  ///< a frame, away from it
+  Vec3 slope = Vec3::Zero();  ///< per frame, away from it
   int fade = 0;
 
   /// `distance` frames from the frame that stays.
@@ -82,7 +84,7 @@ class Splicer {
     offset.value = bone(original_, edge, joint, parent) - bone(placed_.motion, edge, joint, parent);
     if (!has_beyond) return offset;
     if (parent < 0) {
-      // The root's place is met by the path; its speed is left to fit.
+      // The path already meets the root's position; its speed is still to be fitted.
       const Vec3 step = placed_.root_steps[static_cast<size_t>(std::min(edge, beyond))];
       offset.slope = joint_position(original_, edge, 0) - joint_position(original_, beyond, 0) -
                      (beyond < edge ? step : Vec3(-step));
@@ -165,12 +167,14 @@ Motion splice_motion(const Motion& original, const Motion& made, const motion::P
                      const Skeleton& skeleton, const SpliceOptions& options, SpliceReport* report) {
   if (original.joints != skeleton.joints() || made.joints != skeleton.joints() ||
       original.frames < 1 || original.frames > mask.frames() || made.frames != mask.frames()) {
-    throw Error("the motions to splice are of " + std::to_string(original.frames) + " and " +
-                std::to_string(made.frames) + " frames for a mask of " +
-                std::to_string(mask.frames()) + "; they do not fit together");
+    throw Error(fmt::format(
+        "the motions to splice have {} and {} frames and the mask has {}; they do not fit "
+        "together",
+        original.frames, made.frames, mask.frames()));
   }
   for (int t = original.frames; t < mask.frames(); ++t) {
-    if (!mask.whole(t)) throw Error("frames behind the original motion must be new as a whole");
+    if (!mask.whole(t))
+      throw Error("frames after the end of the original motion must be new as a whole");
   }
   return Splicer(original, made, mask, skeleton, options).splice(made, report);
 }

@@ -6,13 +6,12 @@
 namespace remomask::kinematics {
 
 struct SpliceOptions {
-  /// Frames inside of the mask, at each of its edges, over which the difference
-  /// in pose and velocity to the frames that stay fades (cubic Hermite); at most
-  /// half of the stretch.
+  /// Frames inside the mask, at each of its edges, over which the difference in pose and velocity
+  /// to the frames that stay fades out (cubic Hermite); at most half of the stretch.
   int fade = 6;
 };
 
-/// How far the new motion had to be bent to meet both ends; 0 where it had one.
+/// How far the new motion was bent to meet both ends; 0 where it had to meet only one.
 struct SpliceReport {
   double path_shift = 0;  ///< m, the largest of all stretches
   double path_turn = 0;   ///< radians
@@ -24,7 +23,7 @@ struct SpliceReport {
 /// size, and be shorter: frames that it lacks must be marked whole. Positions
 /// outside of the mask are those of `original` bit for bit. Inside:
 /// - bones have the mean lengths of the original, and its floor;
-/// - where all parts are marked, the path goes on from the pose before the stretch
+/// - where all parts are marked, the path continues from the pose before the stretch
 ///   (place, heading), ends in the pose behind it, or does both: path and heading
 ///   are then bent along the way, where the new motion moves;
 /// - where some parts stay, the new parts hang on them;

@@ -12,10 +12,10 @@ namespace remomask::kinematics {
 
 namespace {
 
-constexpr double kIdleSpeed = 0.05;  // m/s, so that a path that stands can be bent at all
+constexpr double kIdleSpeed = 0.05;  // m/s, so that even a path that stands can be bent
 constexpr int kPathRamp = 6;         // frames over which the bending begins and ends
 
-/// Where a frame of the made motion goes: turned about its root, the root to `root`.
+/// Where a frame of the made motion goes: turned about its root, with the root at `root`.
 struct Placement {
   double yaw = 0;
   Vec3 root = Vec3::Zero();
@@ -73,7 +73,7 @@ class PathPlacer {
     return std::atan2(forward.x(), forward.z());
   }
 
-  /// Lays the made pose on the joints that count: the same heading, the same centre.
+  /// Lays the made pose on the joints that count: same heading, same centre.
   template <class Counts>
   Placement fit(int t, const Counts& counts) const {
     Vec3 here = Vec3::Zero(), there = Vec3::Zero();
@@ -109,8 +109,8 @@ class PathPlacer {
     return result;
   }
 
-  /// Where the root is new and other parts stay, its place is fitted; at the ends
-  /// of the stretch it must be where the original's root is.
+  /// Where the root is new and other parts stay, its position is fitted; at the ends of the stretch
+  /// it must be where the original's root is.
   void shift_new_roots(const motion::FrameRun& run) {
     const auto miss = [&](int t) -> Vec3 {
       if (t < 0 || t >= original_.frames) return Vec3::Zero();
@@ -132,7 +132,7 @@ class PathPlacer {
     return result;
   }
 
-  /// The placement of `to` from that of its neighbour `from`, the way turned by `yaw`.
+  /// The placement of `to` from that of its neighbour `from`, with the step turned by `yaw`.
   Placement step(int from, int to, double yaw) const {
     Placement result;
     result.yaw = yaw;
@@ -143,8 +143,8 @@ class PathPlacer {
     return result;
   }
 
-  /// Which share of a bend is done when frame first-1+i is reached, i = 0 .. n:
-  /// most where the path moves, little at both ends.
+  /// Share of a bend that is done when frame first-1+i is reached, i = 0 .. n: large where the path
+  /// moves, small at both ends.
   std::vector<double> progress(const motion::FrameRun& run) const {
     const int steps = run.last - run.first + 1;
     std::vector<double> share(static_cast<size_t>(steps) + 1, 0);
@@ -160,7 +160,7 @@ class PathPlacer {
     return share;
   }
 
-  /// Path and heading between two ends: first the heading, then what is left of the way.
+  /// Bends path and heading between two ends: first the heading, then the remaining distance.
   void bend(const motion::FrameRun& run, SpliceReport& report) {
     const std::vector<double> share = progress(run);
     const Placement begin = at(run.first - 1), end = at(run.last);

@@ -20,7 +20,7 @@ constexpr double kChartPanelWidth = 300, kChartPanelHeight = 250, kChartLeft = 7
                  kChartBetween = 76, kChartTop = 120;
 constexpr double kChartBetweenRows = 140;
 
-/// What the pictures show of the table.
+/// The figures of the table that the pictures show.
 std::vector<lab::AblationColumn> drawn_columns() {
   return {lab::ablation_columns()[0], lab::ablation_columns()[2], lab::ablation_columns()[3]};
 }
@@ -29,7 +29,7 @@ double mean_of_seeds(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// The least of 1, 2, 5 x 10^n that is not below the value.
+/// The smallest of 1, 2, 5 x 10^n that is not below the value.
 double axis_end(double value) {
   if (value <= 0) return 1;
   const double power = std::pow(10, std::floor(std::log10(value)));
@@ -183,9 +183,10 @@ void draw_ablation_bars(const std::string& png_path, const nlohmann::json& docum
   cairo_t* cairo = canvas.cairo();
   drawing::show_text(cairo, 32, 40, "What each part of the model brings", 21, true, 0.16,
                      kChartWidth - 64);
-  drawing::show_text(cairo, 32, 63,
-                     heading_note(document) + "; bars: mean of the seeds, lines: least to most",
-                     13.5, false, 0.45, kChartWidth - 64);
+  drawing::show_text(
+      cairo, 32, 63,
+      heading_note(document) + "; bars: mean of the seeds, lines: minimum to maximum", 13.5, false,
+      0.45, kChartWidth - 64);
   draw_row(cairo, kChartTop, document.at("variants"), document, draw_bars);
   canvas.write(png_path);
 }

@@ -14,7 +14,7 @@ AblationClips load_ablation_clips(const db::Database& database, const std::strin
   AblationClips clips;
   int64_t last = -1;
   for (db::TrainingClip& clip : db::load_training_set(database, set)) {
-    // A twin that was made here has the id of its original, which stands before it.
+    // A twin that was made here has the id of its original, which comes before it.
     const bool made_here = clip.clip_id == last;
     last = clip.clip_id;
     if (clip.split == "train") {

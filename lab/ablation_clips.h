@@ -8,20 +8,20 @@
 
 namespace remomask::lab {
 
-/// What an ablation trains on and asks about.
+/// The clips that an ablation trains on and asks about.
 struct AblationClips {
   training::TrainingSplits training;    ///< `train` with mirror twins
   std::vector<db::TrainingClip> asked;  ///< of the split that prompts come from
 };
 
-/// Clips of the splits train, val and `asked` of these sources (empty: all), with
-/// group numbers that agree between them. Throws FileError without training clips
-/// or clips to ask about.
+/// Clips of the splits train, val and `asked` of these sources (empty: all), with group numbers
+/// that agree between them. Throws FileError if there are no training clips or no clips to ask
+/// about.
 AblationClips load_ablation_clips(const db::Database& database, const std::string& asked,
                                   const std::vector<std::string>& sources);
 
-/// The exam of `prompts` prompts from the captions of the asked clips, spread over
-/// their contents (label_prompts.h). Keeps references to judge and clips.
+/// The exam of `prompts` prompts from the captions of the asked clips, spread over their contents
+/// (label_prompts.h). Keeps references to the judge and the clips.
 AblationExam make_ablation_exam(const evaluation::Evaluator& judge, const db::Database& database,
                                 const AblationClips& clips, int prompts, uint64_t seed);
 

@@ -7,7 +7,7 @@ namespace remomask::lab {
 
 namespace {
 
-// Of a middling clip.
+// Sizes of a clip of medium length.
 constexpr double kTokenFrames = 27, kWords = 10;
 // A weight is used in one multiplication and one addition; the backward pass
 // costs twice the forward one.
@@ -57,7 +57,7 @@ double training_cost(const training::TrainingRecipe& recipe, const std::string& 
         text_weights(recipe.text) * kWords * static_cast<double>(recipe.text_training.batch);
   } else if (stage == "retriever") {
     const training::RetrieverTrainingOptions& options = recipe.retriever_training;
-    // The momentum twin sees every patch, without backward pass.
+    // The momentum twin sees every patch and has no backward pass.
     const double patches = 4 * kTokenFrames / static_cast<double>(recipe.model.retriever.patch) *
                            (options.patch_keep + kForward / kTraining);
     operations = (weights_of(retriever::MotionEncoder(recipe.model.retriever)) * patches +

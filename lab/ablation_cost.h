@@ -4,14 +4,14 @@
 
 namespace remomask::lab {
 
-// Rough arithmetic of a run in 10^9 operations, from the number of weights and
-// of the positions that they are applied to: good to about a factor of two, to
-// order and to weigh the parts of a plan before anything has been measured.
+// Rough cost of a run in 10^9 operations, from the number of weights and of the positions that they
+// are applied to. Good to about a factor of two: enough to order and weigh the parts of a plan
+// before anything has been measured.
 
-/// Of all training steps of a stage.
+/// Cost of all training steps of a stage.
 double training_cost(const training::TrainingRecipe& recipe, const std::string& stage);
 
-/// Of generating `prompts` motions of middle length.
+/// Cost of generating `prompts` motions of medium length.
 double trial_cost(const training::TrainingRecipe& recipe, const SamplingOptions& sampling,
                   int prompts);
 

@@ -31,7 +31,7 @@ at::Tensor judge_clips(const evaluation::Evaluator& judge,
   return torch::cat(vectors, 0);
 }
 
-/// Motions alike in what they show and how cannot be told apart by their texts.
+/// Motions of the same content and style cannot be told apart by their texts.
 std::string rank_key(const db::TrainingClip& clip) {
   return clip.meaning.empty() ? clip.content : clip.meaning;
 }
@@ -107,7 +107,7 @@ ExamResult AblationExam::figures(const at::Tensor& vectors,
 }
 
 ExamResult AblationExam::grade(const std::vector<Motion>& motions) const {
-  if (motions.size() != prompts_.size()) throw Error("the exam wants one motion a prompt");
+  if (motions.size() != prompts_.size()) throw Error("the exam needs one motion for each prompt");
   std::vector<at::Tensor> vectors;
   std::vector<double> foot_skate;
   for (const Motion& motion : motions) {
@@ -121,8 +121,8 @@ ExamResult AblationExam::grade(const std::vector<Motion>& motions) const {
 }
 
 ExamResult AblationExam::grade_real() const {
-  // Contacts and skating of the real clips are those of their stored positions,
-  // which the evaluation of generated motions reports apart.
+  // Contacts and skating of the real clips are those of their stored positions, which the
+  // evaluation of generated motions reports separately.
   return figures(real_, std::vector<double>(prompts_.size(), 0));
 }
 

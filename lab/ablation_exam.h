@@ -17,25 +17,23 @@ namespace remomask::lab {
 /// How well the motions of some prompts answer them.
 struct ExamFigures {
   int prompts = 0;
-  /// Share of motions whose nearest training clip has the content that the
-  /// prompt's clip has.
+  /// Share of the motions whose nearest training clip has the content of the prompt's clip.
   double content_right = 0;
   double foot_skate = 0;  ///< m/s, see PhysicalMetrics
   evaluation::GenerationFigures metrics;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExamFigures, prompts, content_right, foot_skate, metrics)
 
-/// Figures of all prompts ("all") and of some: "take" and "pair" (labels of what
-/// training has not seen), "rare" (contents with few training clips). Subsets
-/// without prompts are left out.
+/// Figures of all prompts ("all") and of some: "take" and "pair" (labels of what training has not
+/// seen) and "rare" (contents with few training clips). Subsets without prompts are left out.
 using ExamResult = std::map<std::string, ExamFigures>;
 
 /// The same questions and the same judge for every model: an evaluator network
 /// that no model was trained with.
 class AblationExam {
  public:
-  /// `train` without mirror twins is the gallery of contents; `asked` holds the
-  /// clips of the prompts. Throws Error when a prompt's clip is missing.
+  /// `train` without mirror twins is the gallery of contents; `asked` holds the clips of the
+  /// prompts. Throws Error if a prompt's clip is missing.
   AblationExam(const evaluation::Evaluator& judge,
                const std::vector<const db::TrainingClip*>& train,
                const std::vector<const db::TrainingClip*>& asked,
@@ -44,9 +42,9 @@ class AblationExam {
   const std::vector<evaluation::LabelPrompt>& prompts() const { return prompts_; }
   /// TrainingClip::group of the prompts' clips.
   const std::vector<int>& groups() const { return groups_; }
-  /// `motions` answer prompts() one by one, canonical, 22 joints.
+  /// `motions` answer prompts() one by one; canonical, 22 joints.
   ExamResult grade(const std::vector<Motion>& motions) const;
-  /// The clips of the prompts themselves: what the judge makes of the truth.
+  /// The figures of the prompts' own clips: what the judge makes of the truth.
   ExamResult grade_real() const;
 
  private:

@@ -21,7 +21,7 @@ std::string key_of(const nlohmann::json& identity) {
   return content_hash(identity.dump()).substr(0, kKeyDigits);
 }
 
-/// Stages whose result a stage reads.
+/// The stages whose results a stage reads.
 std::vector<std::string> stage_inputs(const std::string& stage) {
   if (stage == "retriever") return {"text"};
   if (stage == "masked" || stage == "residual") return {"tokenizer", "retriever"};
@@ -50,8 +50,8 @@ training::TrainingRecipe ablation_recipe(const AblationOptions& options, const s
     const bool shared = stage == "text" || stage == "tokenizer";
     trainer.seed = shared ? options.seeds.front() : seed;
   }
-  // Only the figures of the end are compared; those on the way would cost as much
-  // as a small model's training.
+  // Only the final figures are compared; intermediate ones would cost as much as training a small
+  // model.
   recipe.text_training.validation_every = recipe.text_training.trainer.steps;
   recipe.retriever_training.validation_every = recipe.retriever_training.trainer.steps;
   recipe.tokenizer_training.validate_every = recipe.tokenizer_training.trainer.steps;
@@ -66,7 +66,7 @@ AblationModel plan_model(const AblationOptions& options, const std::string& vari
   const std::filesystem::path folder = std::filesystem::path(options.folder) / "stages";
   for (const std::string& stage : training::recipe_stages(model.recipe)) {
     nlohmann::json identity = training::stage_description(model.recipe, stage);
-    // A preset is a name for sizes that the description holds anyway.
+    // A preset is a name for sizes that the description contains anyway.
     identity["config"].erase("preset");
     identity["data"] = data.training;
     for (const std::string& input : stage_inputs(stage)) {
@@ -101,8 +101,8 @@ std::string trial_title(const AblationModel& model, const AblationTrial& trial) 
   return fmt::format("trial of {}, seed {}{}", model.variant, model.seed, how);
 }
 
-/// Models one after the other, those on the same tokenizer and retriever together:
-/// what they are trained on is prepared once.
+/// Models one after the other, with those on the same tokenizer and retriever together, so that
+/// their training data is prepared once.
 std::vector<size_t> working_order(const std::vector<AblationModel>& models) {
   const auto base = [&](size_t i) {
     return models[i].files.at("tokenizer") + models[i].files.at("retriever");
@@ -134,8 +134,7 @@ AblationPlan plan_ablation(const AblationOptions& options, const AblationData& d
   check_list(options.variants, "variant");
   check_list(options.seeds, "seed");
   if (options.prompts < 1) throw Error("the ablation needs at least one prompt");
-  const training::TrainingRecipe known =
-      training::training_recipe(parse_preset(options.preset));
+  const training::TrainingRecipe known = training::training_recipe(parse_preset(options.preset));
   for (const auto* choices : {&options.steps, &options.batch}) {
     for (const auto& [stage, value] : *choices) {
       training::stage_trainer(known, stage);  // refuses unknown stages
@@ -154,7 +153,7 @@ AblationPlan plan_ablation(const AblationOptions& options, const AblationData& d
   for (const double guidance : options.guidance_sweep) {
     if (!plan.models.front().recipe.model.masked.drops_conditions) {
       throw Error("the guidance of " + options.variants.front() +
-                  " cannot be swept: it is trained without; name another variant first");
+                  " cannot be swept: it is trained without guidance; name another variant first");
     }
     SamplingOptions sampling = plan.models.front().recipe.sampling;
     sampling.guidance = guidance;

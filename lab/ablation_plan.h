@@ -44,7 +44,7 @@ struct AblationTrial {
   std::string file;  ///< of the result
 };
 
-/// One piece of work; its file says whether it is done.
+/// One piece of work; the existence of its file says whether it is done.
 struct AblationJob {
   std::string kind;  ///< a stage, or "trial"
   size_t item = 0;   ///< number of the model or trial
@@ -65,10 +65,9 @@ struct AblationData {
   std::string exam;      ///< of the clips that are asked about, and of the judge
 };
 
-/// The plan of the options. Files are named by
-/// a hash of everything that their content depends on, so that a folder never
-/// mixes results, equal stages of several variants are trained once, and a run
-/// with more variants or seeds keeps what is there. Throws Error for unknown
+/// Makes the plan for the options. Files are named by a hash of everything that their content
+/// depends on, so that a folder never mixes results, equal stages of several variants are trained
+/// once, and a run with more variants or seeds reuses what is there. Throws Error for unknown
 /// variants, stages or presets and for empty or repeated lists.
 AblationPlan plan_ablation(const AblationOptions& options, const AblationData& data);
 

@@ -21,7 +21,7 @@ const std::vector<std::string> kSubsets = {"take", "pair", "rare"};
 nlohmann::json read_trial(const AblationTrial& trial) {
   auto document = nlohmann::json::parse(read_file(trial.file), nullptr, false);
   if (!document.is_object() || !document.contains("figures")) {
-    throw FileError(trial.file, 0, "is no result of a trial; remove it and run again");
+    throw FileError(trial.file, 0, "is not the result of a trial; remove it and run again");
   }
   return document;
 }
@@ -235,7 +235,7 @@ std::string ablation_markdown(const nlohmann::json& document) {
       "each, at the length of the prompt's clip; hits from the training clips. Judge: an "
       "evaluator network that no model was trained with.\n\n",
       document.at("preset").get<std::string>(), trained,
-      seeds == 1 ? "One seed" : fmt::format("{} seeds, mean (least-most)", seeds),
+      seeds == 1 ? "One seed" : fmt::format("{} seeds, mean (min-max)", seeds),
       document.at("prompts").get<int>(), document.at("split").get<std::string>());
   text += main_table(document) + subset_table(document);
   for (const char* sweep : {"guidance", "steps"}) {

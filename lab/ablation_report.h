@@ -23,17 +23,16 @@ const std::vector<AblationColumn>& ablation_columns();
 std::vector<double> seed_values(const nlohmann::json& variant, const std::string& subset,
                                 const std::string& path);
 
-/// Figures that stand alone (real clips, a point of a sweep), as a variant of one seed.
+/// Figures that stand alone (real clips, a point of a sweep) as a variant with one seed.
 nlohmann::json one_seed(const nlohmann::json& figures);
 
-/// All that a finished plan measured: settings, the figures of the real clips,
-/// "variants" in the order of the options (name, meaning, weights, one entry a
-/// seed) and "sweeps" ("guidance", "steps": value and figures). Throws FileError
-/// when a trial is missing or broken.
+/// Everything that a finished plan measured: settings, the figures of the real clips, "variants" in
+/// the order of the options (name, meaning, weights, one entry per seed) and "sweeps" ("guidance",
+/// "steps": value and figures). Throws FileError if a trial is missing or broken.
 nlohmann::json ablation_document(const AblationOptions& options, const AblationPlan& plan,
                                  const ExamResult& real, const nlohmann::json& judge);
 
-/// The document as Markdown tables: mean (least to most) over the seeds.
+/// The document as Markdown tables: mean (minimum-maximum) over the seeds.
 std::string ablation_markdown(const nlohmann::json& document);
 
 }  // namespace remomask::lab

@@ -22,8 +22,7 @@ constexpr const char *kLevelsPrefix = "levels-", *kDropoutPrefix = "quantizer-dr
 void make_momask(training::TrainingRecipe& recipe) {
   training::use_one_row(recipe.model);
   training::ModelConfig& model = recipe.model;
-  const std::string preset =
-      preset_name({parse_preset(recipe.preset).size, /*one_row=*/true});
+  const std::string preset = preset_name({parse_preset(recipe.preset).size, /*one_row=*/true});
   model.tokenizer.preset = model.masked.preset = model.residual.preset = preset;
 }
 
@@ -57,7 +56,7 @@ const std::vector<KnownVariant>& known_variants() {
   return variants;
 }
 
-/// The number behind `prefix` when the name is that and nothing else.
+/// The number after `prefix` if the name consists of both and nothing else.
 std::optional<int> number_behind(const std::string& name, const std::string& prefix, int least,
                                  int most) {
   if (!name.starts_with(prefix)) return std::nullopt;

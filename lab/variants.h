@@ -7,7 +7,7 @@
 
 namespace remomask::lab {
 
-/// One row of the papers' tables: what is left out or exchanged, all else equal.
+/// One row of the papers' tables: what is left out or exchanged, with everything else equal.
 struct ModelVariant {
   std::string name;
   std::string meaning;
@@ -16,14 +16,13 @@ struct ModelVariant {
 /// The variants with fixed names, "full" first.
 const std::vector<ModelVariant>& model_variants();
 
-/// What a variant is: one of model_variants(), or "levels-N" (N levels of the
-/// tokenizer, 1 .. 8) or "quantizer-dropout-P" (P percent, 0 .. 90). Throws Error
-/// for another name.
+/// Finds a variant: one of model_variants(), "levels-N" (N levels of the tokenizer, 1 .. 8) or
+/// "quantizer-dropout-P" (P percent, 0 .. 90). Throws Error for another name.
 ModelVariant find_variant(const std::string& name);
 
-/// Turns the recipe of a preset into that of a variant. What changes is part of
-/// the configs that model files hold. Throws Error for an unknown name, and for
-/// a preset that is a baseline of its own (momask).
+/// Turns the recipe of a preset into that of a variant. What changes is part of the configs that
+/// model files hold. Throws Error for an unknown name, and for a preset that is a baseline of its
+/// own (momask).
 void apply_variant(training::TrainingRecipe& recipe, const std::string& name);
 
 }  // namespace remomask::lab

@@ -30,7 +30,7 @@ constexpr BodyPartMap kKitParts = {{{{17, 18, 19, 20},
 const BodyPartMap& body_parts(const Skeleton& skeleton) {
   if (skeleton.joints() == humanml_skeleton().joints()) return kHumanmlParts;
   if (skeleton.joints() == kit_skeleton().joints()) return kKitParts;
-  throw Error("there is no table of body parts for the skeleton \"" + skeleton.name +
+  throw Error("no body parts are defined for the skeleton \"" + skeleton.name +
               "\"; use humanml3d or kit");
 }
 

@@ -1,6 +1,8 @@
 #include "motion/canonical.h"
 #include "motion/vector.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,23 +17,22 @@ namespace {
 
 void require_finite(const Motion& motion, const Skeleton& skeleton) {
   if (motion.joints != skeleton.joints()) {
-    throw Error("the motion has " + std::to_string(motion.joints) + " joints, the skeleton \"" +
-                skeleton.name + "\" has " + std::to_string(skeleton.joints()));
+    throw Error(fmt::format("the motion has {} joints, the skeleton \"{}\" has {}", motion.joints,
+                            skeleton.name, skeleton.joints()));
   }
   if (motion.frames < 1) throw Error("the motion has no frames");
   for (int t = 0; t < motion.frames; ++t) {
     for (int j = 0; j < motion.joints; ++j) {
       if (!joint_position(motion, t, j).allFinite()) {
-        throw Error("frame " + std::to_string(t) + ", joint " + skeleton.joint_names[j] +
-                    ": the position is not a finite number");
+        throw Error(fmt::format("frame {}, joint {}: the position is not a finite number", t,
+                                skeleton.joint_names[j]));
       }
     }
   }
 }
 
-/// The closed form of HumanML3D's inverse and forward kinematics: every
-/// rotation cancels, so each bone keeps its direction and takes the target
-/// length, and the root path is scaled by the length of the legs.
+/// Closed form of HumanML3D's inverse and forward kinematics: all rotations cancel, so each bone
+/// keeps its direction and takes the target length, and the root path is scaled by the leg length.
 Motion with_uniform_bones(const Motion& raw, const Skeleton& skeleton) {
   const auto bone = [&](int joint) {
     return (joint_position(raw, 0, joint) - joint_position(raw, 0, skeleton.parents[joint])).norm();
@@ -115,8 +116,8 @@ Motion resample(const Motion& motion, double source_fps, double target_fps) {
   if (!(source_fps > 0) || !(target_fps > 0)) throw Error("a frame rate must be above zero");
   if (motion.frames < 2 || source_fps == target_fps) return motion;
   const double seconds = (motion.frames - 1) / source_fps;
-  // The small addition keeps the last frame of clips whose length is a whole
-  // number of target frames up to rounding of the frame time.
+  // The small addition keeps the last frame of clips whose length is a whole number of target
+  // frames up to the rounding of the frame time.
   const int frames = static_cast<int>(seconds * target_fps + 1e-3) + 1;
   Motion result(frames, motion.joints);
   for (int t = 0; t < frames; ++t) {

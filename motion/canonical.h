@@ -11,15 +11,15 @@ struct CanonicalOptions {
   bool facing = true;            ///< frame 0 faces +Z
 };
 
-/// Raw positions -> canonical positions, in the order of HumanML3D. Throws
-/// Error when a value is not finite or a leg has no length.
+/// Brings raw positions to canonical form, in the order of HumanML3D's processing. Throws Error if
+/// a value is not finite or a leg has no length.
 Motion canonicalize(const Motion& raw, const Skeleton& skeleton,
                     const CanonicalOptions& options = {});
 
-/// Left and right exchanged (x negated, sides swapped). Twice is the identity.
+/// Exchanges left and right (negates x, swaps the sides). Applied twice, it is the identity.
 Motion mirror_motion(const Motion& motion, const Skeleton& skeleton);
 
-/// Linear resampling in time (positions) from `source_fps` to `target_fps`.
+/// Resamples positions linearly in time from `source_fps` to `target_fps`.
 Motion resample(const Motion& motion, double source_fps, double target_fps);
 
 }  // namespace remomask::motion

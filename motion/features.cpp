@@ -1,6 +1,8 @@
 #include "motion/features.h"
 #include "motion/vector.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "motion/heading.h"
@@ -14,23 +16,23 @@ namespace {
 
 void require_usable(const Motion& motion, const Skeleton& skeleton) {
   if (motion.joints != skeleton.joints()) {
-    throw Error("the motion has " + std::to_string(motion.joints) + " joints, the skeleton \"" +
-                skeleton.name + "\" has " + std::to_string(skeleton.joints()));
+    throw Error(fmt::format("the motion has {} joints, the skeleton \"{}\" has {}", motion.joints,
+                            skeleton.name, skeleton.joints()));
   }
   if (motion.frames < 2) {
-    throw Error("features need at least 2 frames, the motion has " + std::to_string(motion.frames));
+    throw Error(fmt::format("features need at least 2 frames, the motion has {}", motion.frames));
   }
   for (size_t i = 0; i < motion.positions.size(); ++i) {
     if (!std::isfinite(motion.positions[i])) {
-      throw Error("frame " + std::to_string(i / 3 / motion.joints) +
-                  ": a joint position is not a finite number");
+      throw Error(
+          fmt::format("frame {}: a joint position is not a finite number", i / 3 / motion.joints));
     }
   }
 }
 
-/// HumanML3D's swing rotations: world rest direction to world bone direction,
-/// each relative to the one before in its chain, every chain (also those of the
-/// arms) starting from the facing rotation.
+/// HumanML3D's swing rotations: from world rest direction to world bone direction, each relative to
+/// the previous one in its chain. Every chain, including those of the arms, starts from the facing
+/// rotation.
 void write_official_rotations(const Motion& motion, int frame, const Quat& facing,
                               const Skeleton& skeleton, float* out) {
   for (const std::vector<int>& chain : skeleton.chains) {
@@ -45,8 +47,8 @@ void write_official_rotations(const Motion& motion, int frame, const Quat& facin
   }
 }
 
-/// Heading-free swing rotations: in the facing frame, each from the T-pose
-/// direction as carried by the parent's rotation.
+/// Swing rotations free of the heading: in the facing frame, each from the T-pose direction as
+/// carried by its parent's rotation.
 void write_fixed_rotations(const Motion& motion, int frame, const Quat& facing,
                            const Skeleton& skeleton, float* out) {
   const std::vector<Vec3>& rest = t_pose_directions(skeleton);
@@ -96,8 +98,8 @@ RootPath recover_root(const Features& features) {
 
 void require_dimension(const Features& features, const Skeleton& skeleton) {
   if (features.dim != skeleton.feature_dim()) {
-    throw Error("features of " + std::to_string(features.dim) + " columns do not belong to the \"" +
-                skeleton.name + "\" skeleton, which has " + std::to_string(skeleton.feature_dim()));
+    throw Error(fmt::format("features of {} columns do not fit the skeleton \"{}\", which has {}",
+                            features.dim, skeleton.name, skeleton.feature_dim()));
   }
 }
 

@@ -8,9 +8,9 @@
 
 namespace remomask::motion {
 
-/// From the right to the left hip and shoulder, summed and negated: points to
-/// the character's right. With `historical_hips` the hips count the other way
-/// round, as in HumanML3D's features.
+/// Vector across the body from right to left hip and shoulder, summed and negated, so that it
+/// points to the character's right. With `historical_hips` the hips count in the opposite
+/// direction, as in HumanML3D's features.
 Vec3 across_body(const Motion& motion, int frame, const Skeleton& skeleton,
                  bool historical_hips = false);
 

@@ -1,5 +1,7 @@
 #include "remomask/motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "remomask/error.h"
@@ -8,8 +10,8 @@ namespace remomask {
 
 Motion slice(const Motion& motion, int first, int last) {
   if (first < 0 || last > motion.frames || first > last) {
-    throw Error("frames " + std::to_string(first) + " to " + std::to_string(last) +
-                " lie outside of the motion's " + std::to_string(motion.frames) + " frames");
+    throw Error(fmt::format("frames {} to {} are outside the motion, which has {} frames", first,
+                            last, motion.frames));
   }
   Motion part(last - first, motion.joints);
   part.fps = motion.fps;

@@ -1,5 +1,7 @@
 #include "motion/part_mask.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <numeric>
@@ -24,8 +26,8 @@ std::vector<FrameRun> runs_where(int frames, const std::function<bool(int)>& mar
 
 void PartMask::add(int first, int last, const std::vector<int>& parts) {
   if (first < 0 || last > frames() || first >= last) {
-    throw Error("frames " + std::to_string(first) + " to " + std::to_string(last) +
-                " are no span of a motion of " + std::to_string(frames()) + " frames");
+    throw Error(fmt::format("frames {} to {} are not a span of a motion of {} frames", first, last,
+                            frames()));
   }
   std::vector<int> marked = parts;
   if (marked.empty()) {
@@ -34,7 +36,7 @@ void PartMask::add(int first, int last, const std::vector<int>& parts) {
   }
   for (const int part : marked) {
     if (part < 0 || part >= kBodyParts) {
-      throw Error("there is no body part number " + std::to_string(part) + "; they are 0 to 5");
+      throw Error(fmt::format("there is no body part number {}; they are 0 to 5", part));
     }
     for (int t = first; t < last; ++t) cells_[static_cast<size_t>(t)][part] = true;
   }

@@ -13,7 +13,7 @@ class PartMask {
   explicit PartMask(int frames) : cells_(static_cast<size_t>(frames)) {}
 
   /// Marks parts of frames [first, last); no parts: all six. Throws Error for
-  /// frames outside of the table, an empty span and numbers that are no part.
+  /// frames outside of the table, an empty span and numbers that are not those of a part.
   void add(int first, int last, const std::vector<int>& parts = {});
 
   int frames() const { return static_cast<int>(cells_.size()); }
@@ -22,7 +22,7 @@ class PartMask {
   }
   bool whole(int frame) const;  ///< all six parts
   bool any(int frame) const;
-  int count() const;  ///< of marked cells
+  int count() const;  ///< marked cells
 
  private:
   std::vector<std::array<bool, kBodyParts>> cells_;
@@ -35,7 +35,7 @@ struct FrameRun {
 
 /// The stretches in which a part is marked.
 std::vector<FrameRun> part_runs(const PartMask& mask, int part);
-/// The stretches in which all six parts are.
+/// The stretches in which all six parts are marked.
 std::vector<FrameRun> whole_runs(const PartMask& mask);
 
 }  // namespace remomask::motion

@@ -5,9 +5,9 @@
 
 namespace remomask::motion {
 
-/// Smallest rotation that brings direction `from` to direction `to` (any
-/// lengths; identity when one has none). Opposite directions turn half around
-/// `half_turn_axis` made perpendicular to `from`.
+/// Smallest rotation that takes the direction `from` to the direction `to` (of any length; the
+/// identity if one has no length). Between opposite directions it is a half turn around
+/// `half_turn_axis`, made perpendicular to `from`.
 inline Quat shortest_arc(const Vec3& from, const Vec3& to,
                          const Vec3& half_turn_axis = Vec3::UnitX()) {
   const double length = std::sqrt(from.squaredNorm() * to.squaredNorm());
@@ -28,7 +28,7 @@ inline Quat yaw_rotation(double angle) {
   return Quat(std::cos(angle / 2), 0, std::sin(angle / 2), 0);
 }
 
-/// First two columns of the matrix, column after column.
+/// Writes the first two columns of the rotation matrix, one after the other.
 inline void write_6d(const Quat& rotation, float* out) {
   const Eigen::Matrix3d m = rotation.toRotationMatrix();
   for (int column = 0; column < 2; ++column) {

@@ -41,7 +41,7 @@ Calibration fit_calibration(const std::vector<double>& scores, const std::vector
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return scores[a] < scores[b]; });
   std::vector<IsotonicBlock> blocks;
   for (size_t first = 0; first < order.size();) {
-    // Equal scores have one value: they enter together.
+    // Equal scores have one value, so they enter together.
     IsotonicBlock block{scores[order[first]], scores[order[first]], 0, 0};
     for (; first < order.size() && scores[order[first]] == block.low; ++first) {
       block.right += right[order[first]] ? 1 : 0;
@@ -80,7 +80,7 @@ Calibration parse_calibration(const nlohmann::json& json) {
     calibration.probabilities_ = json.at("probabilities").get<std::vector<double>>();
     calibration.pairs_ = json.at("pairs").get<int64_t>();
   } catch (const nlohmann::json::exception& error) {
-    throw Error(std::string("this is no calibration: ") + error.what());
+    throw Error(std::string("this is not a calibration: ") + error.what());
   }
   const auto rising = [](const std::vector<double>& values, bool strictly) {
     const auto violation =
@@ -92,7 +92,7 @@ Calibration parse_calibration(const nlohmann::json& json) {
   if (calibration.scores_.empty() || calibration.scores_.size() != shares.size() ||
       !rising(calibration.scores_, true) || !rising(shares, false) || shares.front() < 0 ||
       shares.back() > 1) {
-    throw Error("this is no calibration: scores must rise and shares must not fall from 0 to 1");
+    throw Error("this is not a calibration: scores must rise and shares must not fall from 0 to 1");
   }
   return calibration;
 }

@@ -7,7 +7,7 @@
 
 namespace remomask::search {
 
-/// What share of hits with a similarity is right: a table that never falls.
+/// The share of hits with a similarity that is right: a table that never falls.
 class Calibration {
  public:
   Calibration() = default;
@@ -30,18 +30,17 @@ class Calibration {
   int64_t pairs_ = 0;
 };
 
-/// Isotonic regression of `right` on `scores` (least squares, pool adjacent
-/// violators; Zadrozny and Elkan 2002): each block of equal value gives its
-/// least and greatest score to the table. Throws Error for no pairs, different
-/// numbers, or scores that are not finite.
+/// Isotonic regression of `right` on `scores` (least squares, pool adjacent violators; Zadrozny and
+/// Elkan 2002): each block of equal value contributes its smallest and its largest score to the
+/// table. Throws Error for no pairs, different numbers of both, or scores that are not finite.
 Calibration fit_calibration(const std::vector<double>& scores, const std::vector<bool>& right);
 
 void to_json(nlohmann::json& json, const Calibration& calibration);
 /// Throws Error for anything that to_json() does not write.
 Calibration parse_calibration(const nlohmann::json& json);
 
-/// The name under which a database keeps the calibration of a retriever (a fact,
-/// the JSON text).
+/// The name under which a database keeps the calibration of a retriever (a fact with the JSON
+/// text).
 std::string calibration_fact(const std::string& retriever_hash);
 
 /// Predictions whose probability lies in one of equally wide bins of [0, 1].
@@ -52,7 +51,7 @@ struct ReliabilityBin {
   int64_t count = 0;
 };
 
-/// `bins` bins, also the empty ones; 1 belongs to the last.
+/// `bins` bins, including the empty ones; 1 belongs to the last.
 std::vector<ReliabilityBin> reliability_bins(const std::vector<double>& probabilities,
                                              const std::vector<bool>& right, int bins = 10);
 

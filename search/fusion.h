@@ -15,13 +15,13 @@ struct FusedId {
   double score = 0;
 };
 
-/// Damps the difference between the first ranks; the value of the publication.
+/// Damps the difference between the first ranks; the published value.
 inline constexpr double kFusionConstant = 60;
 
-/// Reciprocal rank fusion (Cormack, Clarke, Buettcher, SIGIR 2009): the score of
-/// an id is the sum of weight / (60 + rank) over the rankings that hold it, ranks
-/// from 1. Best first; equal scores in the order of the first ranking, ids that
-/// it lacks last, ascending. Every id of any ranking appears once.
+/// Reciprocal rank fusion (Cormack, Clarke, Buettcher, SIGIR 2009): the score of an id is the sum
+/// of weight / (60 + rank) over the rankings that contain it, with ranks from 1. Best first. Equal
+/// scores come in the order of the first ranking; ids that it lacks come last, ascending. Every id
+/// of any ranking appears once.
 std::vector<FusedId> reciprocal_rank_fusion(const std::vector<Ranking>& rankings);
 
 }  // namespace remomask::search

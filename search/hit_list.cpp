@@ -13,7 +13,7 @@ namespace remomask::search {
 
 namespace {
 
-/// The nearest clips of a query, as many as are wanted.
+/// The nearest clips of a query, as many as requested.
 class NearestClips {
  public:
   NearestClips(const SearchScene& scene, index::LinearQuery query)
@@ -48,7 +48,7 @@ class HitList {
 
   bool full() const { return static_cast<int>(answer_.hits.size()) == query_.k; }
 
-  /// In a ranking by similarity nothing behind it passes either.
+  /// In a ranking by similarity, nothing after it passes, either.
   bool refused_last() const { return refused_last_; }
 
   void add(const index::VectorHit& found) {
@@ -95,7 +95,7 @@ class HitList {
   bool refused_last_ = false;
 };
 
-/// All clips by similarity, and those with boost words by these, as one ranking.
+/// All clips ranked by similarity and the clips with boost words ranked by these, as one ranking.
 std::vector<index::VectorHit> join_rankings(const std::vector<index::VectorHit>& nearest,
                                             const SearchScene& scene, double boost_weight) {
   Ranking by_vector, by_words;
@@ -129,7 +129,7 @@ SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
     }
     return list.finish();
   }
-  // Grouping leaves gaps: look further, until there are enough or no more.
+  // Grouping leaves gaps: look further until there are enough hits or no more clips.
   for (int64_t wanted = std::min<int64_t>(query.k, count);; wanted = std::min(4 * wanted, count)) {
     HitList list(scene, query);
     const std::vector<index::VectorHit> found = nearest.best(wanted);

@@ -9,8 +9,8 @@
 
 namespace remomask::search {
 
-/// The hits of a query: the nearest clips that the scene allows, one a group and
-/// above the limits as the query says.
+/// The hits of a query: the nearest clips that the scene allows, one per group and above the limits
+/// if the query says so.
 SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
                           const index::LinearQuery& vectors);
 

@@ -27,8 +27,8 @@ namespace remomask::search {
 
 namespace {
 
-constexpr int kLeastQueryFrames = 4;   // as clips that are embedded
-constexpr int kMostQueryFrames = 200;  // of the longest clip
+constexpr int kMinQueryFrames = 4;   // as clips that are embedded
+constexpr int kMaxQueryFrames = 200;  // of the longest clip
 constexpr int64_t kCaptionClips = 50;  // whose captions are compared one by one
 constexpr size_t kMomentHits = 50;     // whose windows are embedded
 
@@ -162,11 +162,11 @@ struct MotionSearch::Impl {
 
   db::ClipEmbedding motion_vectors(const Motion& motion) const {
     const double fps = humanml_skeleton().fps;
-    if (motion.frames < kLeastQueryFrames || motion.frames > kMostQueryFrames) {
+    if (motion.frames < kMinQueryFrames || motion.frames > kMaxQueryFrames) {
       throw Error(fmt::format(
           "the motion to compare with is {:.2f} s long; it must be {:.1f} to {:.0f} s: choose a "
           "piece of it (--from, --to)",
-          motion.frames / fps, kLeastQueryFrames / fps, kMostQueryFrames / fps));
+          motion.frames / fps, kMinQueryFrames / fps, kMaxQueryFrames / fps));
     }
     const motion::Features features =
         motion::extract_features_all_frames(motion, humanml_skeleton(), retriever->feature_mode());

@@ -26,7 +26,7 @@ for seed in 1 2 3; do
     }
   done
 done
-echo "\`remomask train retriever $settings\`, seeds 1 to 3, mean (least to most), percent;"
+echo "\`remomask train retriever $settings\`, seeds 1 to 3, mean (min to max), percent;"
 sed -n 2,4p "$folder/none-1/test.txt"
 echo
 echo "| queues | queries | direction | R@1 | R@3 | R@10 | first hit: content | content and style |"

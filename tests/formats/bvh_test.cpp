@@ -157,7 +157,7 @@ TEST(Bvh, NamesTheLineOfEveryFault) {
       {"absurd channels", with("CHANNELS 6", "CHANNELS 600000"), 5, "0 to 6"},
       {"two CHANNELS lines", with("    End Site", "CHANNELS 1 Xrotation\nEnd Site"), 10, "two"},
       {"bad offset", with("OFFSET 0 -5 0", "OFFSET 0 x 0"), 8, "needs a number"},
-      {"huge offset", with("OFFSET 0 -5 0", "OFFSET 0 1e30 0"), 8, "no sensible size"},
+      {"huge offset", with("OFFSET 0 -5 0", "OFFSET 0 1e30 0"), 8, "not a plausible size"},
       {"no channels at all",
        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\nMOTION\nFrames: 1\nFrame Time: 1\n", 5, "channel"},
       {"stray word", with("    End Site", "    Start Site"), 10, "Start"},

@@ -273,11 +273,11 @@ TEST_F(DeltaTest, CopiesThatWereChangedApartDoNotShareAnIndex) {
   write_file_atomically(index::delta_path(copy_index), own);
   const db::Database copy(copy_path, db::OpenMode::read_only);
   const auto of_copy = [&] { return index::VectorIndex::open(copy_index, copy, "retriever"); };
-  EXPECT_NE(error_of([&] { of_copy(); }).find("changed apart"), std::string::npos);
+  EXPECT_NE(error_of([&] { of_copy(); }).find("changed separately"), std::string::npos);
   // Whichever is further on: the one here now passes the other.
   while (database_->generation() <= copy.generation()) add(1);
-  EXPECT_NE(error_of([&] { opened(); }).find("changed apart"), std::string::npos);
-  EXPECT_NE(index::update_index(path_, *database_, "retriever").rebuilt.find("changed apart"),
+  EXPECT_NE(error_of([&] { opened(); }).find("changed separately"), std::string::npos);
+  EXPECT_NE(index::update_index(path_, *database_, "retriever").rebuilt.find("changed separately"),
             std::string::npos);
   expect_present(opened());
   index::update_index(copy_index, copy, "retriever");

@@ -96,7 +96,7 @@ TEST_F(UpdateIndexTest, MendsDamage) {
 
   const std::string base = read_file(path_);
   write_file_atomically(path_, base.substr(0, base.size() / 2));
-  EXPECT_NE(update().rebuilt.find("cut off"), std::string::npos);
+  EXPECT_NE(update().rebuilt.find("truncated"), std::string::npos);
 }
 
 TEST_F(UpdateIndexTest, ReplacesAnIndexOfAnotherOrigin) {

@@ -329,7 +329,7 @@ TEST_F(StoredIndex, RefusesEveryCutAndEveryFlippedByte) {
     }
   }
   write_file_atomically(path_, "");
-  EXPECT_NE(load_error().find("is no file of an index"), std::string::npos);
+  EXPECT_NE(load_error().find("is not an index file"), std::string::npos);
 }
 
 TEST_F(StoredIndex, RefusesAnotherDatabase) {
@@ -338,10 +338,11 @@ TEST_F(StoredIndex, RefusesAnotherDatabase) {
   db::Database other(other_path, db::OpenMode::create);
   EXPECT_NE(error_of([&] {
               index::VectorIndex::open(path_, other, "retriever");
-            }).find("another database"),
+            }).find("does not belong to the database"),
             std::string::npos);
   auto index = index::VectorIndex::open(path_, *database_, "retriever");
-  EXPECT_NE(error_of([&] { index.follow(other); }).find("another database"), std::string::npos);
+  EXPECT_NE(error_of([&] { index.follow(other); }).find("does not belong to the database"),
+            std::string::npos);
 }
 
 TEST_F(StoredIndex, RefusesALaterState) {

@@ -103,7 +103,7 @@ TEST(FootClearance, HighSwingsAndStandingBodiesStayBitForBit) {
 TEST(FootClearance, NoFootIsRaisedByMoreThanAllowed) {
   kinematics::FootClearanceOptions options;
   options.height = 1;
-  options.most = 0.03;
+  options.max_raise = 0.03;
   const Motion before = stepping(0.01);
   Motion after = before;
   kinematics::raise_swings(after, humanml_skeleton(), options);

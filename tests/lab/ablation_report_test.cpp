@@ -48,7 +48,7 @@ TEST(AblationReport, SeedsBecomeMeanAndRange) {
             std::string::npos);
   EXPECT_NE(text.find("| real clips |  |  | 90.0 | "), std::string::npos);
   EXPECT_NE(text.find("masked 60 x 16"), std::string::npos);
-  EXPECT_NE(text.find("2 seeds, mean (least-most)"), std::string::npos);
+  EXPECT_NE(text.find("2 seeds, mean (min-max)"), std::string::npos);
   EXPECT_EQ(text.find("guidance"), std::string::npos);
 }
 
