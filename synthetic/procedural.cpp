@@ -178,10 +178,15 @@ ProceduralClip make_procedural_clip(const std::string& name,
   return clip;
 }
 
-std::vector<ProceduralClip> make_procedural_clips(const ProceduralOptions& options) {
+std::vector<ProceduralClip> make_procedural_clips(const ProceduralOptions& options,
+                                                  const Monitor& monitor) {
   const std::vector<ProceduralKind>& kinds = procedural_kind_table();
   std::vector<ProceduralClip> clips;
   for (int i = 0; i < options.count; ++i) {
+    if (monitor.stop_requested())
+      throw Interrupted("stopped while making motions; nothing was stored");
+    monitor.report(
+        {"make motions", static_cast<double>(i), static_cast<double>(options.count), ""});
     const ProceduralKind& kind = kinds[i % kinds.size()];
     ProceduralClip clip =
         make_procedural_clip(kind.name, choose_parameters(kind, mix_seed(options.seed, i)));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "remomask/motion.h"
+#include "remomask/progress.h"
 
 namespace remomask::synthetic {
 
@@ -45,7 +46,8 @@ ProceduralClip make_procedural_clip(const std::string& kind,
                                     const ProceduralParameters& parameters = {});
 
 /// `count` clips that go through the kinds in turn, each with other parameters.
-/// A function of the options alone.
-std::vector<ProceduralClip> make_procedural_clips(const ProceduralOptions& options = {});
+/// A function of the options alone. Throws Interrupted when the monitor asks to stop.
+std::vector<ProceduralClip> make_procedural_clips(const ProceduralOptions& options = {},
+                                                  const Monitor& monitor = {});
 
 }  // namespace remomask::synthetic

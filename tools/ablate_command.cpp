@@ -28,7 +28,7 @@ void register_ablate(CLI::App& app, Program& program) {
   add_repeatable(*command, "--batch", options->batch, "clips a step, NUMBER or STAGE=NUMBER");
   command->add_option("--source", options->sources, "only these data sets (repeatable)");
   options->evaluator.add(*command);
-  command->add_option("--prompts", options->prompts, "motions a trial")->check(positive_number());
+  command->add_option("--prompts", options->prompts, "motions a trial")->check(at_least(1));
   command->add_option("--split", options->split, "captions of these clips")->capture_default_str();
   command
       ->add_option("--guidance-sweep", options->guidance_sweep,
@@ -38,7 +38,7 @@ void register_ablate(CLI::App& app, Program& program) {
       ->add_option("--steps-sweep", options->steps_sweep,
                    "passes of further trials of the first variant")
       ->delimiter(',')
-      ->check(CLI::Range(1, 1000));
+      ->check(number_between(1, 1000));
   command->add_option("--write-docs", options->docs,
                       "folder whose results.md gets tables and pictures");
   command->add_flag("--dry-run", options->dry_run, "print the plan with its estimated cost");

@@ -67,7 +67,7 @@ void register_export(CLI::App& group, Program& program) {
   command
       ->add_option("--format", options->format,
                    "npy (default) keeps the very positions, bvh opens in other programs")
-      ->transform(CLI::CheckedTransformer(formats));
+      ->transform(CLI::CheckedTransformer(formats).description("{bvh,npy}"));
   command->callback([options, &program] {
     const db::Database database(options->database, db::OpenMode::read_only);
     const auto ids = options->selection.ids(database);

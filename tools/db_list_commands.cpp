@@ -31,7 +31,7 @@ void register_list(CLI::App& group, Program& program) {
   options->filter.add(*command);
   command->add_option("--limit", options->limit, "show at most so many; 0: all")
       ->capture_default_str()
-      ->check(non_negative_number());
+      ->check(at_least(0));
   command->callback([options, &program] {
     const db::Database database(options->database, db::OpenMode::read_only);
     const db::ReadSnapshot snapshot(database);

@@ -5,6 +5,7 @@
 #include "tools/core.h"
 
 #include "tools/output_path.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 
@@ -29,17 +30,17 @@ void register_edit(CLI::App& app, Program& program) {
   add_repeatable(*command, "--cells", options->cells,
                  "A-B[,C-D ...]:PART[,PART ...]: further spans with parts of their own");
   command->add_option("--extend", options->extend, "continue the motion by so many seconds")
-      ->check(CLI::Range(0.0, 600.0));
+      ->check(number_between(0.0, 600.0));
   command
       ->add_option("--fade", options->fade,
                    "frames inside of a span over which it leaves, and meets, what stays")
       ->capture_default_str()
-      ->check(CLI::Range(1, 40));
+      ->check(number_between(1, 40));
   command->add_option("--seed", options->generation.generate.seed, "same seed, same motion")
       ->capture_default_str();
   command->add_option("-n,--count", options->count, "number of motions, seeds SEED, SEED+1, ...")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
+      ->check(number_between(1, 1000));
   command->add_option("--sheet", options->sheet, "draw before and after as a contact sheet (.png)");
   options->files.add_model(*command);
   options->files.add_database(*command);

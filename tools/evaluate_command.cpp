@@ -11,7 +11,7 @@ namespace {
 
 void add_resamples(CLI::App& command, std::optional<int>& resamples) {
   command.add_option("--resamples", resamples, "of the intervals; 0: no intervals")
-      ->check(CLI::Range(0, 1000000));
+      ->check(number_between(0, 1e6));
 }
 
 void register_retrieval(CLI::App& parent, Program& program) {
@@ -28,7 +28,7 @@ void register_retrieval(CLI::App& parent, Program& program) {
   command
       ->add_option("--threshold", options->threshold,
                    "captions as alike as this are the same in the protocol threshold")
-      ->check(CLI::Range(0.5, 1.0));
+      ->check(number_between(0.5, 1.0));
   add_resamples(*command, options->resamples);
   command->add_flag("--all-captions", options->all_captions, "every caption, not the first alone");
   command->callback([options, &program] { core(program).evaluate_retrieval(*options, program); });
@@ -63,7 +63,7 @@ void register_moments(CLI::App& parent, Program& program) {
   command
       ->add_option("--share", options->share,
                    "of the way from the worst frame to the best, where a moment ends")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_between(0.0, 1.0));
   add_resamples(*command, options->resamples);
   command->callback([options, &program] { core(program).evaluate_moments(*options, program); });
 }
@@ -86,9 +86,9 @@ void register_evaluator(CLI::App& parent, Program& program) {
   options->input.add_clips(*command);
   options->evaluator.add(*command);
   command->add_option("--draws", options->draws, "draws of captions and batches")
-      ->check(positive_number());
+      ->check(at_least(1));
   command->add_option("--batch", options->batch, "pairs among which the right one is found")
-      ->check(CLI::Range(2, 1000));
+      ->check(number_between(2, 1000));
   command->callback([options, &program] { core(program).evaluate_evaluator(*options, program); });
 }
 
@@ -117,7 +117,7 @@ void register_generation(CLI::App& parent, Program& program) {
       ->add_option("--prompts", options->prompts,
                    "number of prompts; 0: every clip of the split once")
       ->capture_default_str()
-      ->check(non_negative_number());
+      ->check(at_least(0));
   command->add_option("--split", options->prompt_split, "captions of these clips")
       ->capture_default_str();
   command
@@ -129,12 +129,12 @@ void register_generation(CLI::App& parent, Program& program) {
       ->capture_default_str();
   command->add_option("--repeats", options->repeats, "generations of every prompt (papers: 20)")
       ->capture_default_str()
-      ->check(positive_number());
+      ->check(at_least(1));
   command
       ->add_option("--modality-prompts", options->modality_prompts,
                    "prompts with 30 more generations, for MultiModality (papers: 96)")
       ->capture_default_str()
-      ->check(non_negative_number());
+      ->check(at_least(0));
   command->add_option("--judge", options->judge, "space in which the nearest real motion is found")
       ->capture_default_str()
       ->check(CLI::IsMember({"evaluator", "retriever"}));

@@ -9,6 +9,7 @@
 #include "remomask/error.h"
 #include "text/caption.h"
 #include "tools/output_path.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 
@@ -52,7 +53,7 @@ void register_generate(CLI::App& app, Program& program) {
       ->capture_default_str();
   command->add_option("-n,--count", options->count, "number of motions, seeds SEED, SEED+1, ...")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
+      ->check(number_between(1, 1000));
   command->add_flag("--influence", options->generation.generate.influence,
                     "also say what share of the codes would be others without each retrieved "
                     "motion (as many generations more)");

@@ -6,10 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 
 #include "remomask/error.h"
 #include "remomask/version.h"
+#include "tools/help_formatter.h"
 #include "tools/program.h"
 #include "tools/usage.h"
 
@@ -37,10 +39,13 @@ struct Failure {
 
 /// Says what failed: to people on standard error, with --json also as a document on standard
 /// output.
-int fail(Program& program, const Failure& failure) {
+int fail(TerminalProgram& program, const Failure& failure) {
   program.finish_progress();
   fmt::print(stderr, "remomask: {}\n", failure.message);
   if (failure.code == kExitUsage) fmt::print(stderr, "--help shows what is there.\n");
+  // A command that answers and then fails, as db check does, has said what it found; into an
+  // output that takes nothing, nothing can be said.
+  if (program.answered() || std::ferror(stdout) != 0) return failure.code;
   nlohmann::json error = {
       {"code", failure.code}, {"kind", failure.kind}, {"message", failure.message}};
   if (!failure.path.empty()) error["path"] = failure.path;
@@ -49,17 +54,24 @@ int fail(Program& program, const Failure& failure) {
   return failure.code;
 }
 
+/// Ends with `status` if all output could be written.
+int finish(TerminalProgram& program, int status) {
+  program.finish_progress();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  return fail(program, {kExitFailed, "output", "cannot write to standard output"});
+}
+
 int run(int argc, char** argv) {
   TerminalProgram program;
   CLI::App app{
       "remomask: text to human motion. Searches a database of motions by meaning and uses what\n"
       "it finds to generate a new one."};
   app.name("remomask");
+  app.formatter(std::make_shared<HelpFormatter>());  // Before the commands, which inherit it.
   app.set_version_flag("--version", version_text());
   app.add_flag("--json", program.json, "print one JSON document on standard output");
   app.add_flag("--quiet", program.quiet, "no progress");
-  app.add_option("--threads", program.threads, "CPU threads; 0: all available")
-      ->check(non_negative_number());
+  app.add_option("--threads", program.threads, "CPU threads; 0: all available")->check(at_least(0));
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 ok, 1 failed, 2 wrong usage, 130 interrupted. \"remomask COMMAND --help\"\n"
@@ -72,14 +84,11 @@ int run(int argc, char** argv) {
   for (const RegisterCommand add : commands) add(app, program);
   try {
     app.parse(argc, argv);
-    program.finish_progress();
-    return std::fflush(stdout) == 0 && std::ferror(stdout) == 0
-               ? 0
-               : fail(program, {kExitFailed, "output", "cannot write to standard output"});
+    return finish(program, 0);
   } catch (const CLI::CallForHelp& help) {
-    return app.exit(help);
+    return finish(program, app.exit(help));
   } catch (const CLI::CallForVersion& version) {
-    return app.exit(version);
+    return finish(program, app.exit(version));
   } catch (const CLI::ParseError& error) {
     const std::string hint =
         usage_hint(app, argc, argv, dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr);

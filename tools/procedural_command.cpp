@@ -24,14 +24,14 @@ void register_procedural(CLI::App& app, Program& program) {
   command->add_option("--db", options->database, "database file; made when missing")->required();
   command->add_option("--count", options->make.count, "number of clips")
       ->capture_default_str()
-      ->check(positive_number());
+      ->check(at_least(1));
   command->add_option("--seed", options->make.seed, "other seed, other clips")
       ->capture_default_str();
   command->callback([options, &program] {
     db::StoringDatabase storing(options->database);
     db::Database& database = *storing;
     const Monitor monitor = program.monitor();
-    const auto clips = synthetic::make_procedural_clips(options->make);
+    const auto clips = synthetic::make_procedural_clips(options->make, monitor);
     int added = 0, known = 0;
     db::Transaction transaction(database);
     for (const synthetic::ProceduralClip& made : clips) {
@@ -56,7 +56,7 @@ void register_procedural(CLI::App& app, Program& program) {
         database.add_clip(clip, made.motion);
         ++added;
       }
-      monitor.report({"make motions", static_cast<double>(added + known),
+      monitor.report({"store motions", static_cast<double>(added + known),
                       static_cast<double>(clips.size()), ""});
     }
     transaction.commit();

@@ -94,6 +94,20 @@ struct ProgressPrinter {
   }
 };
 
+/// Seeds as strings, wherever they stand: 64 bits do not fit into the numbers of most JSON
+/// readers.
+void write_seeds_as_text(nlohmann::json& document) {
+  for (auto& [name, member] : document.items()) {
+    if (member.is_structured()) write_seeds_as_text(member);
+    if (!document.is_object()) continue;
+    if (name == "seed" && member.is_number_integer()) member = member.dump();
+    if (name != "seeds" || !member.is_array()) continue;
+    for (auto& seed : member) {
+      if (seed.is_number_integer()) seed = seed.dump();
+    }
+  }
+}
+
 ProgressPrinter& progress_printer() {
   static ProgressPrinter printer;
   return printer;
@@ -122,10 +136,12 @@ Monitor TerminalProgram::monitor() {
 void TerminalProgram::finish_progress() { progress_printer().end_line(); }
 
 void TerminalProgram::print_json(const nlohmann::json& document) {
-  if (json) {
-    // Text from files may hold bytes that are not UTF-8: shown, not fatal.
-    fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  }
+  if (!json) return;
+  answered_ = true;
+  nlohmann::json answer = document;
+  write_seeds_as_text(answer);
+  // Text from files may hold bytes that are not UTF-8: shown, not fatal.
+  fmt::print("{}\n", answer.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 void TerminalProgram::warn(const std::string& message) {

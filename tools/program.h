@@ -41,6 +41,12 @@ class TerminalProgram final : public Program {
   void finish_progress() override;
   void print_json(const nlohmann::json& document) override;
   void warn(const std::string& message) override;
+
+  /// Whether the one document of --json is out.
+  bool answered() const { return answered_; }
+
+ private:
+  bool answered_ = false;
 };
 
 /// Registers a sub-command: name, help with an example, options, what to run.

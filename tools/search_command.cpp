@@ -38,7 +38,7 @@ void add_query_options(CLI::App& command, SearchCommand& options) {
 void add_result_options(CLI::App& command, SearchCommand& options) {
   command.add_option("-k", options.query.k, "number of hits")
       ->capture_default_str()
-      ->check(positive_number());
+      ->check(at_least(1));
   command.add_flag("--ungrouped", options.ungrouped,
                    "list windows, mirror copies and duplicates of a motion one by one");
   command.add_option("--min-similarity", options.query.min_similarity,

@@ -33,9 +33,9 @@ void register_train(CLI::App& app, Program& program) {
   command->add_option("--captions", options->captions,
                       "more captions for the text encoder: JSON Lines with \"captions\"");
   command->add_option("--steps", options->steps, "steps; default: of the preset")
-      ->check(positive_number());
+      ->check(at_least(1));
   command->add_option("--batch", options->batch, "clips a step; default: of the preset")
-      ->check(positive_number());
+      ->check(at_least(1));
   command->add_option("--rate", options->learning_rate, "learning rate; default: of the preset")
       ->check(positive_number());
   command->add_option("--seed", options->seed, "of weights, order and masks")
@@ -47,12 +47,12 @@ void register_train(CLI::App& app, Program& program) {
       ->add_option("--queue-size", options->queue_size,
                    "entries of each queue; default: of the "
                    "preset")
-      ->check(positive_number());
+      ->check(at_least(1));
   command
       ->add_option("--same-label-weight", options->same_label_weight,
                    "retriever: weight of clips with equal labels content and style as negatives of "
                    "each other; default: of the preset")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_between(0.0, 1.0));
   command->callback([options, &program] { core(program).train(*options, program); });
 }
 

@@ -79,18 +79,18 @@ GivenCommands given_commands(const CLI::App& app, const std::vector<std::string>
   return given;
 }
 
-CLI::Validator limited_number(bool zero_too) {
-  const std::string limit = zero_too ? "at least 0" : "greater than 0";
+/// Accepts the numbers that `accepts` takes; `limit` says which those are.
+template <class Accepts>
+CLI::Validator limited_number(const std::string& limit, Accepts accepts) {
   return CLI::Validator(
-      [limit, zero_too](const std::string& text) {
+      [limit, accepts](const std::string& text) {
         double value = 0;
         const char* end = text.data() + text.size();
         const auto read = std::from_chars(text.data(), end, value);
         if (read.ec != std::errc() || read.ptr != end) return "\"" + text + "\" is not a number";
-        if (zero_too ? value >= 0 : value > 0) return std::string();
-        return fmt::format("must be {}, not {}", limit, text);
+        return accepts(value) ? std::string() : fmt::format("must be {}, not {}", limit, text);
       },
-      zero_too ? "at least 0" : "above 0");
+      limit);
 }
 
 }  // namespace
@@ -120,7 +120,18 @@ std::string usage_hint(const CLI::App& app, int argc, const char* const* argv,
   return "";
 }
 
-CLI::Validator positive_number() { return limited_number(/*zero_too=*/false); }
-CLI::Validator non_negative_number() { return limited_number(/*zero_too=*/true); }
+CLI::Validator positive_number() {
+  return limited_number("greater than 0", [](double value) { return value > 0; });
+}
+
+CLI::Validator at_least(int min) {
+  return limited_number(fmt::format("at least {}", min),
+                        [min](double value) { return value >= min; });
+}
+
+CLI::Validator number_between(double min, double max) {
+  return limited_number(fmt::format("from {} to {}", min, max),
+                        [min, max](double value) { return value >= min && value <= max; });
+}
 
 }  // namespace remomask::tools

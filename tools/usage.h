@@ -12,6 +12,7 @@ std::string usage_hint(const CLI::App& app, int argc, const char* const* argv, b
 
 /// Validators whose messages name the number and the limit as people write them.
 CLI::Validator positive_number();
-CLI::Validator non_negative_number();
+CLI::Validator at_least(int min);
+CLI::Validator number_between(double min, double max);
 
 }  // namespace remomask::tools

@@ -38,7 +38,8 @@ void FilterOptions::add(CLI::App& command) {
       command.add_option("--words", words, "only clips with all these words in one caption");
   command
       .add_option("--caption-query", caption_query,
-                  "only clips whose captions answer this FTS5 query, for example 'walk NOT run*'")
+                  "only clips whose captions answer this FTS5 query, for example 'walk NOT run*'; "
+                  "not with --words")
       ->excludes(plain);
 }
 

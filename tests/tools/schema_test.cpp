@@ -1,6 +1,8 @@
 // The answers of the program are what the schemas of docs/schema say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
@@ -96,6 +98,46 @@ TEST(Schema, DescribesMotions) {
   EXPECT_EQ(fault_of("motions.json", run_json({"generate", "--script", folder.path("script.txt"),
                                                "-o", folder.path("script.npy")})),
             "");
+}
+
+TEST(Schema, DescribesDatabases) {
+  const ScratchFolder folder;
+  const std::string database = folder.path("motions.sqlite");
+  EXPECT_EQ(fault_of("procedural.json", run_json({"procedural", "--db", database, "--count", "12",
+                                                  "--seed", "18446744073709551615"})),
+            "");
+  EXPECT_EQ(fault_of("index.json", run_json({"index", database})), "");
+  EXPECT_EQ(fault_of("database_info.json", run_json({"db", "info", database})), "");
+  EXPECT_EQ(fault_of("database_info.json", run_json({"info", database})), "");
+  EXPECT_EQ(fault_of("clips.json", run_json({"db", "list", database, "--limit", "2"})), "");
+  EXPECT_EQ(fault_of("clips.json", run_json({"db", "show", database, "1"})), "");
+  EXPECT_EQ(fault_of("check.json", run_json({"db", "check", database})), "");
+  run_json({"db", "export", database, folder.path("clips"), "--format", "npy"});
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path("clips"))) {
+    if (entry.path().extension() != ".npy") continue;
+    const json made = run_json({"convert", entry.path().string(), folder.path("walk.bvh")});
+    EXPECT_EQ(fault_of("convert.json", made), "");
+    break;
+  }
+}
+
+TEST(Schema, DescribesModels) {
+  const ScratchFolder folder;
+  const std::string database = folder.path("motions.sqlite");
+  run_json({"procedural", "--db", database, "--count", "60"});
+  const json trained = run_json({"train", "evaluator", "--db", database, "--preset", "tiny",
+                                 "--steps", "2", "--seed", "7", "-o", folder.path("run")});
+  EXPECT_EQ(fault_of("train.json", trained), "");
+  const json info = run_json({"info", trained.at("file")});
+  EXPECT_EQ(fault_of("model_info.json", info), "");
+  EXPECT_EQ(info.dump().find("\"seed\":7"), std::string::npos) << "seeds are strings";
+}
+
+TEST(Schema, DescribesErrors) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--json", "genrate"}, {"--json", "info", "absent.sqlite"}}) {
+    EXPECT_EQ(fault_of("error.json", json::parse(run_program(arguments).output)), "");
+  }
 }
 
 TEST(Schema, DescribesSearches) {

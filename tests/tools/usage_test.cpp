@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -83,7 +85,10 @@ TEST(Usage, WrongWordsAreAnsweredWithWhatWasMeant) {
       {{"db", "lst", "x.sqlite"}, "did you mean \"list\"?"},
       {{"generate", "a walk", "--secnds", "3", "-o", "x.bvh"}, "did you mean --seconds?"},
       {{"generate", "a", "person", "waves", "-o", "x.bvh"}, "put the sentence in quotes"},
-      {{"search", "walk", "-k", "0"}, "must be greater than 0, not 0"},
+      {{"search", "walk", "-k", "0"}, "must be at least 1, not 0"},
+      {{"generate", "walk", "--top", "3", "-o", "x.bvh"}, "must be from 0 to 1, not 3"},
+      {{"generate", "walk", "-n", "5000", "-o", "x.bvh"}, "must be from 1 to 1000, not 5000"},
+      {{"convert", "a.bvh", "b.npy", "--metres-per-unit", "0"}, "must be greater than 0, not 0"},
       {{"--threads", "-3", "info", "x.sqlite"}, "must be at least 0, not -3"},
   };
   for (const auto& [arguments, expected] : cases) {
@@ -108,9 +113,46 @@ TEST(Usage, ErrorsAreJsonWhereAnswersAre) {
 }
 
 TEST(Usage, AFullOutputIsAFailure) {
-  EXPECT_NE(std::system("'" REMOMASK_PROGRAM "' --version >/dev/full 2>/dev/null") |
-                std::system("'" REMOMASK_PROGRAM "' search walk >/dev/full 2>/dev/null"),
-            0);
+  for (const char* arguments : {"--version", "--help", "--json genrate", "--json info absent"}) {
+    const std::string command =
+        std::string("'" REMOMASK_PROGRAM "' ") + arguments + " >/dev/full 2>/dev/null";
+    const int status = std::system(command.c_str());
+    ASSERT_TRUE(WIFEXITED(status)) << arguments;
+    EXPECT_NE(WEXITSTATUS(status), 0) << arguments;
+  }
+}
+
+TEST(Usage, HelpKeepsLimitsOutOfItsColumns) {
+  const std::string text = run_program({"db", "export", "--help"}).output;
+  EXPECT_NE(text.find("--format {bvh,npy}"), std::string::npos) << text;
+  for (const char* noise : {"ENUM", "Excludes", "->", "INT:"}) {
+    EXPECT_EQ(text.find(noise), std::string::npos) << noise << "\n" << text;
+  }
+}
+
+TEST(Usage, ADamagedDatabaseIsAnsweredWithOneDocument) {
+  const ScratchFolder folder;
+  const std::string database = folder.path("motions.sqlite");
+  run_json({"procedural", "--db", database, "--count", "4"});
+  std::fstream file(database, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(database)) - 2000);
+  file << std::string(1500, 'x');
+  file.close();
+  const ProgramResult result = run_program({"--json", "--quiet", "db", "check", database});
+  EXPECT_EQ(result.exit_code, 1) << result.errors;
+  EXPECT_TRUE(nlohmann::json::accept(result.output)) << result.output;
+}
+
+TEST(Usage, MakingMotionsStopsSoon) {
+  const ScratchFolder folder;
+  const auto begin = std::chrono::steady_clock::now();
+  const ProgramResult result =
+      run_program({"procedural", "--db", folder.path("many.sqlite"), "--count", "100000"}, {},
+                  /*kill_after_seconds=*/1, SIGINT);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4));
+  EXPECT_EQ(result.exit_code, 130) << result.errors;
+  EXPECT_NE(result.errors.find("nothing was stored"), std::string::npos) << result.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder.path("many.sqlite")));
 }
 
 TEST(Usage, HelpVersionAndMistakesLoadNoNetwork) {
