@@ -27,8 +27,8 @@ namespace remomask::search {
 
 namespace {
 
-constexpr int kMinQueryFrames = 4;   // as clips that are embedded
-constexpr int kMaxQueryFrames = 200;  // of the longest clip
+constexpr int kMinQueryFrames = 4;     // as clips that are embedded
+constexpr int kMaxQueryFrames = 200;   // of the longest clip
 constexpr int64_t kCaptionClips = 50;  // whose captions are compared one by one
 constexpr size_t kMomentHits = 50;     // whose windows are embedded
 
