@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "nn/layers.h"
 #include "base/preset.h"
+#include "nn/layers.h"
 #include "text/wordpiece.h"
 
 namespace remomask::encoders {

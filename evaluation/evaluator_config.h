@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "motion/features.h"
 #include "base/preset.h"
+#include "motion/features.h"
 
 namespace remomask::evaluation {
 

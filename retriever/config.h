@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "motion/features.h"
 #include "base/preset.h"
+#include "motion/features.h"
 
 namespace remomask::retriever {
 

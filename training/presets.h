@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "base/preset.h"
 #include "generator/masked_transformer.h"
 #include "generator/residual_transformer.h"
-#include "base/preset.h"
 #include "retriever/config.h"
 #include "tokenizer/tokenizer.h"
 

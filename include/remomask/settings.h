@@ -15,9 +15,9 @@ struct Setting {
 
 /// What should be in the environment before the library is loaded: the BLAS kernels of this
 /// processor (Debian's OpenBLAS does not know recent Intel processors and falls back to kernels
-/// that are five times slower), passive waiting (OpenMP threads that spin fight with OpenBLAS's), and
-/// the number of CPUs that the process may use. Variables that are set already are not in the list.
-/// The library never sets them itself: a program that links it sets them in its launcher, or
+/// that are five times slower), passive waiting (OpenMP threads that spin fight with OpenBLAS's),
+/// and the number of CPUs that the process may use. Variables that are set already are not in the
+/// list. The library never sets them itself: a program that links it sets them in its launcher, or
 /// executes itself again with them.
 REMOMASK_API std::vector<Setting> recommended_settings();
 

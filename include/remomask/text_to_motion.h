@@ -13,8 +13,8 @@
 namespace remomask {
 
 struct OpenOptions {
-  std::string index;        ///< index file; empty: beside the database
-  int threads = 0;          ///< CPU threads of every call; 0: all that the process may use
+  std::string index;  ///< index file; empty: beside the database
+  int threads = 0;    ///< CPU threads of every call; 0: all that the process may use
   /// false: open no index, so that a database without one will do. Then nothing can be searched,
   /// retrieved or generated with retrieval.
   bool retrieval = true;

@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 
 /// Stages whose description differs from that of the full model.
 std::set<std::string> changed_stages(const std::string& variant) {
-  training::TrainingRecipe full = training::training_recipe(parse_preset("small")),
-                           other = full;
+  training::TrainingRecipe full = training::training_recipe(parse_preset("small")), other = full;
   lab::apply_variant(other, variant);
   std::set<std::string> changed;
   for (const std::string& stage : training::recipe_stages(full)) {

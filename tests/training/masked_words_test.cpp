@@ -51,8 +51,8 @@ TEST(MaskedWords, TrainingLearnsTheGrammarAndRepeatsExactly) {
   options.batch = 32;
   options.validation_every = 60;
   const auto run = [&] {
-    return training::train_text_encoder(grammar_captions(),
-                                        encoders::text_encoder_preset(ModelSize::tiny), options, {});
+    return training::train_text_encoder(
+        grammar_captions(), encoders::text_encoder_preset(ModelSize::tiny), options, {});
   };
   const nn::ModelStage first = run();
   EXPECT_EQ(first.kind, "text");

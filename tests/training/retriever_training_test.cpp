@@ -151,9 +151,10 @@ TEST(RetrieverTraining, StartsFromAPretrainedTower) {
 TEST(RetrieverTraining, ErrorsSayWhatToDo) {
   auto clips = separable_clips(2, 1, 1);
   for (db::TrainingClip& clip : clips) clip.captions = {" . "};
-  EXPECT_THROW(training::train_retriever(clips, {}, {}, retriever::retriever_preset(ModelSize::tiny),
-                                         quick_options(1), {}),
-               Error);
+  EXPECT_THROW(
+      training::train_retriever(clips, {}, {}, retriever::retriever_preset(ModelSize::tiny),
+                                quick_options(1), {}),
+      Error);
   EXPECT_THROW(retriever::Retriever(nn::ModelStage{"tokenizer", {}, {}}), Error);
   EXPECT_THROW(retriever::Retriever(nn::ModelStage{"retriever", {{"preset", "tiny"}}, {}}), Error);
   EXPECT_THROW(parse_preset("huge"), Error);
