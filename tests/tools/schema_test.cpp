@@ -110,7 +110,7 @@ TEST(Schema, DescribesDatabases) {
   EXPECT_EQ(fault_of("database_info.json", run_json({"db", "info", database})), "");
   EXPECT_EQ(fault_of("database_info.json", run_json({"info", database})), "");
   EXPECT_EQ(fault_of("clips.json", run_json({"db", "list", database, "--limit", "2"})), "");
-  EXPECT_EQ(fault_of("clips.json", run_json({"db", "show", database, "1"})), "");
+  EXPECT_EQ(fault_of("clips.json", run_json({"db", "show", database, "#1"})), "");
   EXPECT_EQ(fault_of("check.json", run_json({"db", "check", database})), "");
   run_json({"db", "export", database, folder.path("clips"), "--format", "npy"});
   for (const auto& entry : std::filesystem::directory_iterator(folder.path("clips"))) {
