@@ -12,6 +12,7 @@
 
 #include "bench/machine_peak.h"
 #include "bench/unit_vectors.h"
+#include "db/transaction.h"
 #include "index/index_changes.h"
 #include "index/update_index.h"
 
@@ -24,7 +25,7 @@ constexpr const char* kRetriever = "0123456789abcdef0123456789abcdef";
 void add_clips(db::Database& database, int first, int count) {
   const auto vectors = random_unit_vectors(count, kWidth, static_cast<uint64_t>(first));
   std::vector<db::ClipEmbedding> embeddings;
-  database.begin();
+  db::Transaction transaction(database);
   for (int i = 0; i < count; ++i) {
     db::Clip clip;
     clip.name = "clip" + std::to_string(first + i);
@@ -41,7 +42,7 @@ void add_clips(db::Database& database, int first, int count) {
         {database.add_clip(clip, motion), row, std::vector<float>(6 * kWidth / 4, 0.5f), row});
   }
   database.add_embeddings(kRetriever, embeddings);
-  database.commit();
+  transaction.commit();
 }
 
 /// Changes that a database can go through beside its index.
@@ -65,14 +66,14 @@ const Change kRemoved{
 const Change kDescribed{"described", {0, 0}, [](db::Database& database) {
                           const auto ids = every_67th(database);
                           const auto vectors = database.embeddings(kRetriever, ids);
-                          database.begin();
+                          db::Transaction transaction(database);
                           for (const int64_t id : ids) {
                             db::ClipChanges captions;
                             captions.captions = {"a person does number " + std::to_string(-id)};
                             database.update_clip(id, captions);
                           }
                           database.add_embeddings(kRetriever, vectors);
-                          database.commit();
+                          transaction.commit();
                         }};
 
 /// A database, its index, and copies of it that have changed.

@@ -109,13 +109,15 @@ std::optional<std::string> Database::fact(const std::string& key) const { return
 
 struct ReadSnapshot::Impl {
   const SqliteConnection& connection;
+  bool was_query_only;
 };
 
 ReadSnapshot::ReadSnapshot(const Database& database) {
   const SqliteConnection& connection = database.impl_->connection;
   if (connection.in_transaction()) return;  // which sees one state already
+  const bool query_only = connection.integer("PRAGMA query_only") != 0;
   connection.execute("BEGIN");
-  impl_ = std::make_unique<Impl>(Impl{connection});
+  impl_ = std::make_unique<Impl>(Impl{connection, query_only});
   // What would be written inside would be lost with the snapshot.
   connection.execute("PRAGMA query_only = ON");
   // SQLite fixes the state at the first read, not at BEGIN.
@@ -125,8 +127,8 @@ ReadSnapshot::ReadSnapshot(const Database& database) {
 ReadSnapshot::~ReadSnapshot() {
   // Nothing was written: there is nothing that could fail to be stored.
   if (!impl_) return;
-  sqlite3_exec(impl_->connection.handle(), "COMMIT; PRAGMA query_only = OFF", nullptr, nullptr,
-               nullptr);
+  const char* sql = impl_->was_query_only ? "COMMIT" : "COMMIT; PRAGMA query_only = OFF";
+  sqlite3_exec(impl_->connection.handle(), sql, nullptr, nullptr, nullptr);
 }
 
 }  // namespace remomask::db

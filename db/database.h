@@ -73,10 +73,7 @@ class Database {
   /// that were changed apart reach the same generation by other writers.
   std::string writer_of(int64_t generation) const;
 
-  /// All statements between begin and commit are stored together or not at all.
-  void begin();
-  void commit();
-  void rollback();
+  // Clips.
 
   /// Stores a clip and its motion, returns its id. Throws Error for a name or
   /// content that is already there.
@@ -102,8 +99,10 @@ class Database {
   Motion motion(int64_t id) const;
   /// The clips whose captions answer a query in the language of SQLite's FTS5
   /// (words are compared by their stem, without case and accents), best first,
-  /// then by id; negative `limit`: all. Throws Error for a query that is none.
+  /// then by id; negative `limit`: all. Throws Error for an invalid query.
   std::vector<CaptionMatch> match_captions(const std::string& fts_query, int limit = -1) const;
+
+  // The import log.
 
   /// Notes of one import, so that it can go on and be repeated: the fingerprint
   /// says which content of the file, imported how, is stored.
@@ -113,6 +112,8 @@ class Database {
                           const std::string& fingerprint, const std::string& outcome);
   /// File -> fingerprint of all notes of one source.
   std::map<std::string, std::string> imported_files(const std::string& source) const;
+
+  // Embeddings.
 
   /// Replaces all vectors of `retriever_hash`.
   void store_embeddings(const std::string& retriever_hash,
@@ -141,12 +142,19 @@ class Database {
   /// Of one clip; nothing when this retriever has not embedded it.
   std::optional<ClipEmbedding> embedding(const std::string& retriever_hash, int64_t clip_id) const;
 
+  // Facts.
+
   /// Free-form facts about the whole database.
   void set_fact(const std::string& key, const std::string& value);
   std::optional<std::string> fact(const std::string& key) const;
 
  private:
   friend class ReadSnapshot;
+  friend class Transaction;  // db/transaction.h
+  void begin();
+  void commit();
+  void rollback();
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -78,22 +78,7 @@ SqliteConnection::SqliteConnection(std::string path, SqliteMode mode) : path_(st
   const std::string uri = uri_of_path(path_);
   try {
     if (mode == SqliteMode::read_only) {
-      // A program that was killed while it wrote a file without WAL leaves a
-      // journal, which a reader may not play back: read once as a writer.
-      if (std::filesystem::exists(path_ + "-journal") && ::access(path_.c_str(), W_OK) == 0) {
-        open(uri, SQLITE_OPEN_READWRITE);
-        sqlite3_busy_timeout(handle_, kBusyMilliseconds);
-        integer("SELECT count(*) FROM sqlite_master");
-        close();
-      }
-      open(uri, SQLITE_OPEN_READONLY);
-      // Readers of a WAL database make two files beside it. Where they must not,
-      // nobody else writes either, so the file can be taken as unchanging.
-      const std::string parent = std::filesystem::absolute(path_).parent_path().string();
-      if (::access(parent.c_str(), W_OK) != 0 && !std::filesystem::exists(path_ + "-wal")) {
-        close();
-        open(uri + "?immutable=1", SQLITE_OPEN_READONLY);
-      }
+      open_for_reading(uri);
     } else {
       open(uri, SQLITE_OPEN_READWRITE | (mode == SqliteMode::create ? SQLITE_OPEN_CREATE : 0));
     }
@@ -113,6 +98,22 @@ void SqliteConnection::open(const std::string& uri, int flags) {
   if (code == SQLITE_OK) return;
   if (!handle_) fail(code);
   fail();
+}
+
+void SqliteConnection::open_for_reading(const std::string& uri) {
+  const std::string folder = std::filesystem::absolute(path_).parent_path().string();
+  const bool folder_is_writable = ::access(folder.c_str(), W_OK) == 0;
+  if (folder_is_writable && ::access(path_.c_str(), W_OK) == 0) {
+    // Readers of a WAL database make two files beside it. SQLite lets only a connection that
+    // could write remove them when it is the last one to close, or play back the journal of a
+    // killed program. The pragma refuses every change of the content.
+    open(uri, SQLITE_OPEN_READWRITE);
+    execute("PRAGMA query_only = ON");
+    return;
+  }
+  // Where those files cannot be made, nobody else writes either: the file does not change.
+  const bool unchanging = !folder_is_writable && !std::filesystem::exists(path_ + "-wal");
+  open(unchanging ? uri + "?immutable=1" : uri, SQLITE_OPEN_READONLY);
 }
 
 void SqliteConnection::close() {

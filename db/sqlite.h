@@ -36,6 +36,7 @@ class SqliteConnection {
 
  private:
   void open(const std::string& uri, int flags);
+  void open_for_reading(const std::string& uri);
   void close();
 
   std::string path_;

@@ -28,7 +28,7 @@ struct ClipSelection {
 int64_t find_clip(const db::Database& database, const std::string& name_or_id);
 
 /// {"key=value", ...} -> labels. Numbers, true, false, null, lists and objects are
-/// read as JSON, other values are texts. Throws Error for what is no such pair.
+/// read as JSON, other values are texts. Throws Error for anything that is not such a pair.
 nlohmann::json parse_labels(const std::vector<std::string>& pairs);
 
 }  // namespace remomask::tools

@@ -17,15 +17,15 @@ void register_convert(CLI::App& app, Program& program) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      add_command(app, "convert", "bring a motion file to 22 joints at 20 fps, as BVH or npy",
+      add_command(app, "convert", "convert a motion file to 22 joints at 20 fps, as BVH or npy",
                   "remomask convert take.bvh joints.npy");
   command->add_option("input", options->input, ".bvh or .npy (joints or features)")->required();
   command->add_option("output", options->output, ".bvh or .npy")->required();
   options->overwrite.add(*command);
   command->add_option("--skeleton-map", options->file.skeleton_map, "map name or file");
-  command->add_option("--up-axis", options->up_axis, "X, Y or Z; default: found")
+  command->add_option("--up-axis", options->up_axis, "X, Y or Z; default: detected")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
-  command->add_option("--metres-per-unit", options->metres_per_unit, "default: found")
+  command->add_option("--metres-per-unit", options->metres_per_unit, "default: detected")
       ->check(positive_number());
   command->add_option("--skip-frames", options->file.skip_frames, "frames to drop at the start");
   command->callback([options, &program] {
@@ -44,8 +44,8 @@ void register_convert(CLI::App& app, Program& program) {
                                  {"up_axis", std::string(1, loaded.up_axis)}});
     }
     fmt::print("{}: {} at 20 fps (from {} at {:g} fps, skeleton map {})\n", options->output,
-               counted(loaded.motion.frames, "frame"), loaded.source_frames, loaded.source_fps,
-               loaded.skeleton_map.empty() ? "none" : loaded.skeleton_map);
+               counted(loaded.motion.frames, "frame"), counted(loaded.source_frames, "frame"),
+               loaded.source_fps, loaded.skeleton_map.empty() ? "none" : loaded.skeleton_map);
   });
 }
 

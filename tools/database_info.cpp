@@ -2,12 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 
 #include "db/clip_filter.h"
 
 namespace remomask::tools {
+
+namespace {
+
+/// More digits than these say nothing about a clip of 20 frames a second.
+double rounded(double value, double digits) { return std::round(value * digits) / digits; }
+
+std::string readable(const nlohmann::json& value) {
+  if (value.is_number_float()) return fmt::format("{:g}", value.get<double>());
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+}  // namespace
 
 nlohmann::json describe_database(const std::string& path) {
   const db::Database database(path, db::OpenMode::read_only);
@@ -34,7 +47,7 @@ nlohmann::json describe_database(const std::string& path) {
           {"bytes", std::filesystem::file_size(path)},
           {"clips", clips.size()},
           {"captions", captions},
-          {"minutes", seconds / 60},
+          {"minutes", rounded(seconds / 60, 10)},
           {"splits", splits},
           {"sources", sources},
           {"licences", licences},
@@ -49,8 +62,8 @@ nlohmann::json clip_json(const db::Clip& clip) {
           {"source_file", clip.source_file},
           {"start_frame", clip.start_frame},
           {"frames", clip.frames},
-          {"seconds", clip_seconds(clip)},
-          {"speed", clip.speed},
+          {"seconds", rounded(clip_seconds(clip), 100)},
+          {"speed", rounded(clip.speed, 1000)},
           {"split", clip.split},
           {"licence", clip.licence},
           {"group", clip.group},
@@ -67,10 +80,10 @@ void print_description(const nlohmann::json& document) {
     if (value.is_object() && !value.empty()) {
       fmt::print("{}:\n", key);
       for (const auto& [name, entry] : value.items()) {
-        fmt::print("  {:<12} {}\n", name.empty() ? "(unknown)" : name, entry.dump());
+        fmt::print("  {:<12} {}\n", name.empty() ? "(unknown)" : name, readable(entry));
       }
     } else {
-      fmt::print("{:<12} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+      fmt::print("{:<12} {}\n", key, readable(value));
     }
   }
 }

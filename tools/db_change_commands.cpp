@@ -25,15 +25,18 @@ void register_add(CLI::App& group, Program& program) {
   CLI::App* command = add_command(
       group, "add", "store single motion files as clips",
       "remomask db add motions.sqlite bow.bvh --caption \"a person bows\" --tag new --split train");
-  command->add_option("database", options->database, "database file; made when missing")
+  command->add_option("database", options->database, "database file; created when missing")
       ->required();
   command->add_option("files", options->files, "BVH or npy files")->required();
-  add_repeatable(*command, "--caption", options->add.captions, "of all these files");
-  add_repeatable(*command, "--label", options->labels, "KEY=VALUE, of all these files");
-  add_repeatable(*command, "--tag", options->add.tags, "of all these files");
-  command->add_option("--split", options->add.split, "train, val, test or none")
+  // The second names are those of `db tag`, where the first ones are filters.
+  add_repeatable(*command, "--caption,--add-caption", options->add.captions,
+                 "caption of all these files");
+  add_repeatable(*command, "--label,--set-label", options->labels,
+                 "KEY=VALUE, a label of all these files");
+  add_repeatable(*command, "--tag,--add-tag", options->add.tags, "tag of all these files");
+  command->add_option("--split,--set-split", options->add.split, "train, val, test or none")
       ->capture_default_str();
-  command->add_option("--licence", options->add.licence, "licence of these motions");
+  command->add_option("--licence,--set-licence", options->add.licence, "licence of these motions");
   command->add_option("--source", options->add.source, "name of the data set")
       ->capture_default_str();
   command->add_option("--skeleton-map", options->add.skeleton_map,
@@ -56,8 +59,8 @@ void register_add(CLI::App& group, Program& program) {
       }
     }
     if (!report.rejected.empty()) {
-      throw Error(fmt::format("{} of {} files were left out", report.rejected.size(),
-                              options->files.size()));
+      throw Error(fmt::format("{} of {} left out", report.rejected.size(),
+                              counted(static_cast<int64_t>(options->files.size()), "file")));
     }
   });
 }
@@ -65,12 +68,12 @@ void register_add(CLI::App& group, Program& program) {
 struct TagOptions {
   std::string database;
   ClipSelection selection;
-  std::vector<std::string> added, dropped, labels, captions;
+  std::vector<std::string> added, dropped, labels, captions, added_captions;
   std::optional<std::string> split, licence;
 
   bool empty() const {
     return added.empty() && dropped.empty() && labels.empty() && captions.empty() && !split &&
-           !licence;
+           added_captions.empty() && !licence;
   }
   db::ClipChanges changes(const db::Clip& clip) const {
     db::ClipChanges changes;
@@ -81,7 +84,13 @@ struct TagOptions {
     });
     changes.tags = tags;
     if (!labels.empty()) changes.labels = parse_labels(labels);
-    if (!captions.empty()) changes.captions = captions;
+    if (!captions.empty() || !added_captions.empty()) {
+      changes.captions = captions.empty() ? clip.captions : captions;
+      for (const std::string& caption : added_captions) {
+        auto& all = *changes.captions;
+        if (std::find(all.begin(), all.end(), caption) == all.end()) all.push_back(caption);
+      }
+    }
     changes.split = split;
     changes.licence = licence;
     return changes;
@@ -92,19 +101,23 @@ void register_tag(CLI::App& group, Program& program) {
   auto options = std::make_shared<TagOptions>();
   CLI::App* command =
       add_command(group, "tag", "change tags, labels, split, licence or captions of clips",
-                  "remomask db tag motions.sqlite --words jump --min-seconds 2 --add air");
+                  "remomask db tag motions.sqlite --words jump --min-seconds 2 --add-tag air");
   command->add_option("database", options->database, "database file")->required();
   options->selection.add(*command);
-  add_repeatable(*command, "--add", options->added, "tag to give to these clips");
-  add_repeatable(*command, "--drop", options->dropped, "tag to take from these clips");
+  add_repeatable(*command, "--add-tag,--add", options->added, "give these clips this tag");
+  add_repeatable(*command, "--drop-tag,--drop", options->dropped, "take this tag from these clips");
   add_repeatable(*command, "--set-label", options->labels,
-                 "KEY=VALUE to give to these clips; KEY=null takes it away");
+                 "KEY=VALUE: give these clips this label; KEY=null removes it");
   command->add_option("--set-split", options->split, "train, val, test or none");
   command->add_option("--set-licence", options->licence, "licence of these clips");
+  add_repeatable(*command, "--add-caption", options->added_captions,
+                 "caption to add to those of these clips");
   add_repeatable(*command, "--set-caption", options->captions,
-                 "new caption in the place of all old ones");
+                 "caption that replaces all those of these clips");
   command->callback([options, &program] {
-    if (options->empty()) throw Error("nothing is to be changed; say --add, --drop or --set-...");
+    if (options->empty()) {
+      throw Error("no change is given; give --add-tag, --drop-tag, --add-caption or --set-...");
+    }
     db::Database database(options->database, db::OpenMode::read_write);
     db::Transaction transaction(database);
     const auto ids = options->selection.chosen_ids(database);
@@ -121,37 +134,61 @@ void register_tag(CLI::App& group, Program& program) {
   });
 }
 
+/// "walk, jump, bow and 9 more".
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr size_t kShown = 3;
+  std::string text;
+  for (size_t i = 0; i < std::min(kShown, names.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  return names.size() <= kShown ? text : fmt::format("{} and {} more", text, names.size() - kShown);
+}
+
 void register_remove(CLI::App& group, Program& program) {
   struct Options {
     std::string database;
     ClipSelection selection;
-    bool yes = false;
+    bool yes = false, dry_run = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(group, "remove", "remove clips with all that belongs to them",
-                                  "remomask db remove motions.sqlite --tag broken --yes");
+  CLI::App* command =
+      add_command(group, "remove", "remove clips with their captions, tags and vectors",
+                  "remomask db remove motions.sqlite --tag broken --yes");
   command->add_option("database", options->database, "database file")->required();
   options->selection.add(*command);
-  command->add_flag("--yes", options->yes, "needed when more than one clip is meant");
+  command->add_flag("--yes", options->yes,
+                    "confirms the removal of several clips that filters chose");
+  command->add_flag("--dry-run", options->dry_run, "show which clips would go, remove none");
   command->callback([options, &program] {
     db::Database database(options->database, db::OpenMode::read_write);
     db::Transaction transaction(database);
     const auto ids = options->selection.chosen_ids(database);
-    if (ids.size() > 1 && !options->yes) {
-      throw Error(
-          fmt::format("this would remove {} clips, for example '{}'; add --yes if that is "
-                      "meant (remomask db snapshot keeps a copy)",
-                      ids.size(), database.clip(ids.front()).name));
-    }
     std::vector<std::string> names;
     for (const int64_t id : ids) names.push_back(database.clip(id).name);
-    database.remove(ids);
-    transaction.commit();
-    if (program.json) return program.print_json({{"removed", names}});
-    for (const std::string& name : names) fmt::print("removed {}\n", name);
-    fmt::print("{}\n", names.empty() ? "no clip passes the filters"
-                                     : counted(static_cast<int64_t>(names.size()), "clip") +
-                                           " removed from " + options->database);
+    const std::string count = counted(static_cast<int64_t>(names.size()), "clip");
+    const bool must_confirm = options->selection.clips.empty() && names.size() > 1;
+    if (must_confirm && !options->yes && !options->dry_run) {
+      throw Error(
+          fmt::format("this would remove {} ({}); --dry-run lists them, --yes removes "
+                      "them (remomask db snapshot keeps a copy)",
+                      count, some_of(names)));
+    }
+    if (!options->dry_run) {
+      database.remove(ids);
+      transaction.commit();
+    }
+    const int64_t left =
+        database.clip_count() - (options->dry_run ? static_cast<int64_t>(names.size()) : 0);
+    if (program.json) {
+      return program.print_json(
+          {{options->dry_run ? "would_remove" : "removed", names}, {"clips_left", left}});
+    }
+    if (names.empty()) return fmt::print("no clip passes the filters\n");
+    for (const std::string& name : names) {
+      fmt::print("{} {}\n", options->dry_run ? "would remove" : "removed", name);
+    }
+    fmt::print("{}: {} {}, {} left\n", options->database, count,
+               options->dry_run ? "would be removed" : "removed", counted(left, "clip"));
   });
 }
 

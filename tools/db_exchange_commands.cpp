@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "db/merge.h"
 #include "exchange/export.h"
 #include "tools/clip_selection.h"
@@ -21,7 +22,7 @@ void register_merge(CLI::App& group, Program& program) {
     std::string database, other;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(group, "merge", "take in all clips of another database",
+  CLI::App* command = add_command(group, "merge", "add all clips of another database",
                                   "remomask db merge motions.sqlite colleague.sqlite");
   command->add_option("database", options->database, "database file that grows")->required();
   command->add_option("other", options->other, "database file that is read")->required();
@@ -40,12 +41,13 @@ void register_merge(CLI::App& group, Program& program) {
     }
     for (const std::string& warning : report.warnings) program.warn(warning);
     for (const auto& [clip, same] : report.duplicates) {
-      fmt::print("left out {}: is the same motion as {}\n", clip, same);
+      fmt::print("left out {}: it is the same motion as {}\n", clip, same);
     }
     for (const auto& [clip, name] : report.renamed) fmt::print("{} is now {}\n", clip, name);
-    fmt::print("{} of {} clips added ({} duplicates, {} renamed), {} vectors came along\n",
-               report.added, report.clips, report.duplicates.size(), report.renamed.size(),
-               report.embeddings);
+    fmt::print("{} of {} added ({}, {} renamed), with the vectors of {}\n", report.added,
+               counted(report.clips, "clip"),
+               counted(static_cast<int64_t>(report.duplicates.size()), "duplicate"),
+               report.renamed.size(), counted(report.embeddings, "clip"));
   });
 }
 
@@ -66,7 +68,7 @@ void register_export(CLI::App& group, Program& program) {
       {"bvh", exchange::ExportFormat::bvh}, {"npy", exchange::ExportFormat::npy}};
   command
       ->add_option("--format", options->format,
-                   "npy (default) keeps the very positions, bvh opens in other programs")
+                   "npy (default) keeps the exact positions, bvh opens in other programs")
       ->transform(CLI::CheckedTransformer(formats).description("{bvh,npy}"));
   command->callback([options, &program] {
     const db::Database database(options->database, db::OpenMode::read_only);
@@ -76,7 +78,7 @@ void register_export(CLI::App& group, Program& program) {
     if (program.json) {
       return program.print_json({{"folder", options->folder}, {"clips", ids.size()}});
     }
-    fmt::print("{}: {} clips\n", options->folder, ids.size());
+    fmt::print("{}: {}\n", options->folder, counted(static_cast<int64_t>(ids.size()), "clip"));
   });
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "tools/clip_selection.h"
 #include "tools/database_info.h"
 #include "tools/db_commands.h"
@@ -29,7 +30,7 @@ void register_list(CLI::App& group, Program& program) {
                   "remomask db list motions.sqlite --label content=walk --min-speed 0.5");
   command->add_option("database", options->database, "database file")->required();
   options->filter.add(*command);
-  command->add_option("--limit", options->limit, "show at most so many; 0: all")
+  command->add_option("--limit", options->limit, "maximum number of clips to show; 0: all")
       ->capture_default_str()
       ->check(at_least(0));
   command->callback([options, &program] {
@@ -48,7 +49,8 @@ void register_list(CLI::App& group, Program& program) {
       }
     }
     if (program.json) return program.print_json({{"clips", clips}, {"matching", ids.size()}});
-    fmt::print("{} of {} clips pass, {} shown\n", ids.size(), database.clip_count(), shown);
+    fmt::print("{} of {} pass the filters, {} shown\n", ids.size(),
+               counted(database.clip_count(), "clip"), shown);
   });
 }
 
@@ -58,10 +60,11 @@ void register_show(CLI::App& group, Program& program) {
     std::vector<std::string> clips;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(group, "show", "show all that is stored about clips",
+  CLI::App* command = add_command(group, "show", "show everything stored about clips",
                                   "remomask db show motions.sqlite walk_01");
   command->add_option("database", options->database, "database file")->required();
-  command->add_option("clips", options->clips, "names or numbers of clips")->required();
+  command->add_option("clips", options->clips, "names of clips, or their numbers as #12")
+      ->required();
   command->callback([options, &program] {
     const db::Database database(options->database, db::OpenMode::read_only);
     const db::ReadSnapshot snapshot(database);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "db/check.h"
 #include "db/snapshot.h"
 #include "db/upgrade.h"
@@ -14,7 +15,7 @@ namespace {
 void register_db_info(CLI::App& group, Program& program) {
   auto path = std::make_shared<std::string>();
   CLI::App* command =
-      add_command(group, "info", "say what a database holds", "remomask db info motions.sqlite");
+      add_command(group, "info", "summarise a database", "remomask db info motions.sqlite");
   command->add_option("database", *path, "database file")->required();
   command->callback([path, &program] {
     const auto document = describe_database(*path);
@@ -25,8 +26,9 @@ void register_db_info(CLI::App& group, Program& program) {
 
 void register_check(CLI::App& group, Program& program) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = add_command(group, "check", "look for damage; exit status 1 if there is any",
-                                  "remomask db check motions.sqlite");
+  CLI::App* command =
+      add_command(group, "check", "look for damage; the exit status is 1 when there is some",
+                  "remomask db check motions.sqlite");
   command->add_option("database", *path, "database file")->required();
   command->callback([path, &program] {
     const db::CheckReport report = db::check_database(*path, program.monitor());
@@ -48,11 +50,11 @@ void register_check(CLI::App& group, Program& program) {
                         {"embeddings", report.embeddings},
                         {"defects", defects}});
     if (!report.defects.empty()) {
-      throw Error(fmt::format("{}: {} defects", *path, report.defects.size()));
+      throw Error(*path + ": " + counted(static_cast<int64_t>(report.defects.size()), "defect"));
     }
     if (!program.json) {
-      fmt::print("{}: in order ({} clips, {} captions, {} clips' vectors)\n", *path, report.clips,
-                 report.captions, report.embeddings);
+      fmt::print("{}: no defects ({}, {}, vectors of {})\n", *path, counted(report.clips, "clip"),
+                 counted(report.captions, "caption"), counted(report.embeddings, "clip"));
     }
   });
 }
@@ -83,7 +85,7 @@ void register_restore(CLI::App& group, Program& program) {
     bool force = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = add_command(group, "restore", "put a snapshot in the place of a database",
+  CLI::App* command = add_command(group, "restore", "replace a database by a snapshot",
                                   "remomask db restore monday.sqlite motions.sqlite --force");
   command->add_option("snapshot", options->snapshot, "file that db snapshot wrote")->required();
   command->add_option("database", options->database, "database file")->required();
@@ -98,14 +100,14 @@ void register_restore(CLI::App& group, Program& program) {
     if (!report.set_aside.empty()) {
       fmt::print("the damaged old file is now {}\n", report.set_aside);
     }
-    fmt::print("{}: restored; its index must be made anew: remomask index {}\n", options->database,
+    fmt::print("{}: restored; rebuild its index: remomask index {}\n", options->database,
                options->database);
   });
 }
 
 void register_upgrade(CLI::App& group, Program& program) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = add_command(group, "upgrade", "bring a database to the present format",
+  CLI::App* command = add_command(group, "upgrade", "upgrade a database to the current format",
                                   "remomask db upgrade motions.sqlite");
   command->add_option("database", *path, "database file")->required();
   command->callback([path, &program] {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "base/machine.h"
 #include "db/storing_database.h"
 #include "exchange/import.h"
@@ -41,7 +42,7 @@ void register_import(CLI::App& app, Program& program) {
       ->add_option("folder", options->import.folder,
                    "folder or archive of BVH / npy files, or a HumanML3D / KIT-ML folder")
       ->required();
-  command->add_option("--db", options->database, "database file; made when missing")->required();
+  command->add_option("--db", options->database, "database file; created when missing")->required();
   command->add_option("--captions", options->import.captions_file,
                       "JSON Lines: {\"clip\", \"captions\", \"labels\", \"split\"}; default: "
                       "FOLDER.jsonl or FOLDER/captions.jsonl");
@@ -67,10 +68,11 @@ void register_import(CLI::App& app, Program& program) {
     for (const auto& entry : report.rejected) {
       fmt::print("rejected {}: {}\n", entry.file, entry.reason);
     }
-    fmt::print("{} of {} files stored now, {} known before, {} rejected\n", report.files_stored,
-               report.files, report.files_known, report.rejected.size());
-    fmt::print("{} clips ({} windows of long files), {:.1f} MB in {:.1f} s\n", report.clips_stored,
-               report.clips_windowed, static_cast<double>(report.bytes_read) / 1e6, report.seconds);
+    fmt::print("{} of {} stored now, {} stored before, {} rejected\n", report.files_stored,
+               counted(report.files, "file"), report.files_known, report.rejected.size());
+    fmt::print("{} ({} of long files), {:.1f} MB in {:.1f} s\n",
+               counted(report.clips_stored, "clip"), counted(report.clips_windowed, "window"),
+               static_cast<double>(report.bytes_read) / 1e6, report.seconds);
   });
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "db/clip_hash.h"
 #include "db/database.h"
 #include "db/storing_database.h"
@@ -19,13 +20,13 @@ void register_procedural(CLI::App& app, Program& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       add_command(app, "procedural",
-                  "add motions made by formula, with captions, to a database (no data needed)",
+                  "add motions computed by formulas, with captions, to a database (needs no data)",
                   "remomask procedural --db motions.sqlite --count 360");
-  command->add_option("--db", options->database, "database file; made when missing")->required();
+  command->add_option("--db", options->database, "database file; created when missing")->required();
   command->add_option("--count", options->make.count, "number of clips")
       ->capture_default_str()
       ->check(at_least(1));
-  command->add_option("--seed", options->make.seed, "other seed, other clips")
+  command->add_option("--seed", options->make.seed, "another seed makes other clips")
       ->capture_default_str();
   command->callback([options, &program] {
     db::StoringDatabase storing(options->database);
@@ -62,7 +63,8 @@ void register_procedural(CLI::App& app, Program& program) {
     transaction.commit();
     program.finish_progress();
     if (program.json) return program.print_json({{"added", added}, {"known", known}});
-    fmt::print("{}: {} motions added, {} were there already\n", options->database, added, known);
+    fmt::print("{}: {} added, {} already there\n", options->database, counted(added, "motion"),
+               known);
   });
 }
 

@@ -8,6 +8,7 @@
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
 #include "tools/evidence_text.h"
+#include "tools/output_path.h"
 #include "tools/program.h"
 
 namespace remomask::tools {
@@ -28,12 +29,14 @@ void register_sheet(CLI::App& app, Program& program) {
     std::vector<std::string> inputs, titles;
     std::string output;
     drawing::SheetOptions sheet;
+    OutputOptions overwrite;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = add_command(app, "sheet", "draw motion files as a contact sheet (PNG)",
                                   "remomask sheet walk.bvh wave.npy -o sheet.png");
   command->add_option("inputs", options->inputs, "motion files, one row each")->required();
   command->add_option("-o,--output", options->output, "picture (.png)")->required();
+  options->overwrite.add(*command);
   command->add_option("--title", options->titles,
                       "title of each row; default: prompt or file name");
   command->add_option("--heading", options->sheet.heading, "above all rows");
@@ -54,6 +57,7 @@ void register_sheet(CLI::App& app, Program& program) {
       row.motion = load_motion(options->inputs[i]).motion;
       rows.push_back(row);
     }
+    options->overwrite.check(options->output, "", program);
     drawing::write_contact_sheet(options->output, rows, options->sheet);
     if (program.json) return program.print_json({{"output", options->output}});
     fmt::print("{}: {}\n", options->output, counted(static_cast<int64_t>(rows.size()), "motion"));

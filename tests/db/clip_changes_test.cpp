@@ -4,6 +4,7 @@
 #include "db/database.h"
 #include "db/database_impl.h"
 #include "db/sqlite.h"
+#include "db/transaction.h"
 #include "motion/vector.h"
 #include "tests/db/db_test_tools.h"
 
@@ -156,9 +157,10 @@ TEST_F(ClipChangesTest, TheLogOfVectorsSaysWhatChangedSince) {
   EXPECT_EQ(changes(dropped), std::pair(Ids{ids_[1]}, Ids{ids_[2]}));
   EXPECT_EQ(changes(database_.generation()), std::pair(Ids{}, Ids{}));
   EXPECT_EQ(changes(0, "unknown"), std::pair(Ids{}, Ids{}));
-  database_.begin();
-  database_.remove({ids_[0]});
-  database_.rollback();
+  {
+    const db::Transaction undone(database_);
+    database_.remove({ids_[0]});
+  }
   EXPECT_EQ(changes(start), std::pair(Ids{ids_[1]}, Ids{ids_[2]}));
 }
 

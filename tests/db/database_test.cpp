@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <limits>
+#include <memory>
 
 #include "db/clip_hash.h"
 #include "db/sqlite.h"
@@ -125,7 +126,7 @@ TEST(Database, RolledBackTransactionLeavesNothing) {
   db::Database database(folder / "d", db::OpenMode::create);
   const int64_t kept = database.add_clip(named_clip("a"), small_motion(20, 0.f));
   const int64_t generation = database.generation();
-  database.begin();
+  auto transaction = std::make_unique<db::Transaction>(database);
   database.add_clip(named_clip("b"), small_motion(20, 1.f));
   database.remove_clips("test", "a");
   database.note_imported_file("test", "b", "f", "stored");
@@ -133,7 +134,7 @@ TEST(Database, RolledBackTransactionLeavesNothing) {
   EXPECT_THROW(database.add_clip(named_clip("b"), small_motion(20, 2.f)), Error);
   EXPECT_EQ(database.clip_count(), 1);
   EXPECT_GT(database.generation(), generation);
-  database.rollback();
+  transaction.reset();
   EXPECT_EQ(database.find_name("a"), kept);
   EXPECT_EQ(database.clip_count(), 1);
   EXPECT_EQ(database.generation(), generation);
@@ -145,10 +146,10 @@ TEST(Database, UncommittedWorkIsLostWithTheProgram) {
   const std::string path = folder / "d";
   {
     db::Database database(path, db::OpenMode::create);
-    database.begin();
+    db::Transaction kept(database);
     database.add_clip(named_clip("a"), small_motion(20, 0.f));
-    database.commit();
-    database.begin();
+    kept.commit();
+    const db::Transaction lost(database);
     database.add_clip(named_clip("b"), small_motion(20, 1.f));
   }
   const db::Database database(path, db::OpenMode::read_only);
@@ -334,14 +335,36 @@ TEST(Database, ReadersSeeTheLastCommitAndASecondWriterIsTold) {
   TestFolder folder;
   const std::string path = folder / "d";
   db::Database writer(path, db::OpenMode::create);
-  writer.begin();
+  db::Transaction transaction(writer);
   writer.add_clip(named_clip("a"), small_motion(20, 0.f));
   EXPECT_EQ(db::Database(path, db::OpenMode::read_only).clip_count(), 0);
   db::Database second(path, db::OpenMode::read_write);
-  EXPECT_NE(error_of([&] { second.begin(); }).find("another program is writing"),
+  EXPECT_NE(error_of([&] { db::Transaction refused(second); }).find("another program is writing"),
             std::string::npos);
-  writer.commit();
+  transaction.commit();
   EXPECT_EQ(second.clip_count(), 1);
+}
+
+TEST(Database, ReadersLeaveNoFilesBeside) {
+  TestFolder folder;
+  const std::string path = folder / "d";
+  { db::Database(path, db::OpenMode::create).add_clip(named_clip("a"), small_motion(20, 0.f)); }
+  const auto files = [&] {
+    return std::distance(std::filesystem::directory_iterator(folder.path()), {});
+  };
+  {
+    db::Database reader(path, db::OpenMode::read_only);
+    EXPECT_EQ(reader.clip_count(), 1);
+    // Other connections come, write and go meanwhile.
+    db::Database(path, db::OpenMode::read_write).set_fact("key", "value");
+    EXPECT_EQ(reader.fact("key"), "value");
+    { const db::ReadSnapshot snapshot(reader); }
+    EXPECT_NE(error_of([&] { reader.set_fact("key", "other"); }).find("readonly"),
+              std::string::npos);
+  }
+  EXPECT_EQ(files(), 1);
+  EXPECT_EQ(db::Database(path, db::OpenMode::read_only).fact("key"), "value");
+  EXPECT_EQ(files(), 1);
 }
 
 TEST(Database, FullDiskIsNamed) {

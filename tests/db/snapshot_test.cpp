@@ -4,6 +4,7 @@
 
 #include "db/check.h"
 #include "db/database.h"
+#include "db/transaction.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
@@ -34,10 +35,10 @@ class SnapshotTest : public testing::Test {
 
 TEST_F(SnapshotTest, IsOneFileOfOneMomentWhileAnotherProgramWrites) {
   db::Database writer(path_, db::OpenMode::read_write);
-  writer.begin();
+  db::Transaction transaction(writer);
   writer.add_clip(named_clip("later"), walking_motion(30, 30));
   db::snapshot_database(path_, copy_, false);
-  writer.commit();
+  transaction.commit();
   EXPECT_EQ(content(copy_), before_);
   EXPECT_EQ(db::Database(copy_, db::OpenMode::read_only).uuid(), writer.uuid());
   EXPECT_FALSE(fs::exists(copy_ + "-wal"));
@@ -108,10 +109,11 @@ TEST_F(SnapshotTest, ARestoreThatFailsLeavesTheOldDatabase) {
   EXPECT_EQ(content(path_), before_);
   EXPECT_EQ(files(), before);
   db::Database writer(path_, db::OpenMode::read_write);
-  writer.begin();
-  EXPECT_NE(error_of([&] { db::restore_database(copy_, path_, true); }).find("is writing"),
-            std::string::npos);
-  writer.rollback();
+  {
+    const db::Transaction undone(writer);
+    EXPECT_NE(error_of([&] { db::restore_database(copy_, path_, true); }).find("is writing"),
+              std::string::npos);
+  }
   EXPECT_EQ(content(path_), before_);
 }
 

@@ -1,4 +1,5 @@
 #include "db/storing_database.h"
+#include "db/transaction.h"
 
 #include <filesystem>
 #include <memory>
@@ -32,7 +33,7 @@ TEST_F(StoringDatabaseTest, LeavesNothingWhenNothingWasStored) {
   EXPECT_THROW(
       {
         db::StoringDatabase storing(path_);
-        (*storing).begin();
+        const db::Transaction transaction(*storing);
         (*storing).add_clip(named_clip("a"), walking_motion(30, 1));
         throw Error("before the commit");
       },

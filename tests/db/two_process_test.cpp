@@ -8,6 +8,7 @@
 
 #include "db/check.h"
 #include "db/database.h"
+#include "db/transaction.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
@@ -30,7 +31,7 @@ void require(bool holds, const std::string& what) {
 void write_until(const std::string& path, Clock::time_point end) {
   db::Database database(path, db::OpenMode::read_write);
   for (int n = 0; Clock::now() < end; ++n) {
-    database.begin();
+    db::Transaction transaction(database);
     db::Clip clip = named_clip("clip " + std::to_string(n));
     clip.captions = {"one walk", "nothing"};
     const int64_t id = database.add_clip(clip, walking_motion(20 + n % 50, n));
@@ -45,7 +46,7 @@ void write_until(const std::string& path, Clock::time_point end) {
       database.add_embeddings("r", {{changed, {1.f}, {1.f}, {1.f}}});
     }
     if (ids.size() > 40) database.remove({ids[0], ids[ids.size() / 2]});
-    database.commit();
+    transaction.commit();
   }
 }
 

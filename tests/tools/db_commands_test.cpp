@@ -109,7 +109,8 @@ TEST_F(DbCommandsTest, DigitsAreNamesAndNumbersHaveASign) {
       << refused.errors;
   EXPECT_EQ(run_json({"db", "show", database_, "#" + number})["clips"][0]["name"], name(1));
   const ProgramResult removed = run_program({"db", "remove", database_, "#" + number});
-  EXPECT_EQ(removed.output, "removed " + name(1) + "\n1 clip removed from " + database_ + "\n");
+  EXPECT_EQ(removed.output,
+            "removed " + name(1) + "\n" + database_ + ": 1 clip removed, 11 clips left\n");
 }
 
 TEST_F(DbCommandsTest, RemoveAsksBeforeItTakesSeveral) {
@@ -120,8 +121,65 @@ TEST_F(DbCommandsTest, RemoveAsksBeforeItTakesSeveral) {
   EXPECT_EQ(run_program({"db", "remove", database_, "--yes"}).exit_code, 1);
   EXPECT_EQ(count({}), 12u);
   EXPECT_EQ(run_json({"db", "remove", database_, name(0)})["removed"], nlohmann::json{name(0)});
-  run_json({"db", "remove", database_, name(1), name(2), "--yes"});
+  // Listing the names is the confirmation.
+  const auto removed = run_json({"db", "remove", database_, name(1), name(2)});
+  EXPECT_EQ(removed["clips_left"], 9);
   EXPECT_EQ(count({}), 9u);
+}
+
+TEST_F(DbCommandsTest, DryRunShowsWhatRemoveWouldTake) {
+  const ProgramResult shown =
+      run_program({"db", "remove", database_, "--source", "procedural", "--dry-run"});
+  EXPECT_EQ(shown.exit_code, 0) << shown.errors;
+  EXPECT_NE(shown.output.find("would remove " + name(0) + "\n"), std::string::npos);
+  EXPECT_NE(shown.output.find("12 clips would be removed, 0 clips left"), std::string::npos)
+      << shown.output;
+  const auto json = run_json({"db", "remove", database_, name(0), "--dry-run"});
+  EXPECT_EQ(json["would_remove"], nlohmann::json{name(0)});
+  EXPECT_EQ(json["clips_left"], 11);
+  EXPECT_EQ(count({}), 12u);
+}
+
+TEST_F(DbCommandsTest, ANameOfDigitsIsThatClip) {
+  const std::string out = scratch_.path("out");
+  run_json({"db", "export", database_, out, name(0)});
+  run_json({"db", "remove", database_, name(0)});
+  std::filesystem::rename(out + "/" + name(0) + ".npy", out + "/000002.npy");
+  run_json({"db", "add", database_, out + "/000002.npy", "--add-caption", "digits"});
+  EXPECT_EQ(run_json({"db", "show", database_, "000002"})["clips"][0]["captions"],
+            nlohmann::json{"digits"});
+  EXPECT_EQ(run_json({"db", "remove", database_, "000002"})["removed"], nlohmann::json{"000002"});
+  // Now that it is gone, clip number 2 must not go in its place.
+  const ProgramResult refused = run_program({"db", "remove", database_, "000002"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.errors.find("there is no clip named"), std::string::npos) << refused.errors;
+  EXPECT_NE(refused.errors.find("write #2"), std::string::npos) << refused.errors;
+  EXPECT_EQ(count({}), 11u);
+}
+
+TEST_F(DbCommandsTest, CaptionsAreAddedOrReplaced) {
+  const auto captions = [&] {
+    return run_json({"db", "show", database_, name(0)})["clips"][0]["captions"];
+  };
+  nlohmann::json expected = captions();
+  expected.push_back("one more");
+  run_json({"db", "tag", database_, name(0), "--add-caption", "one more"});
+  EXPECT_EQ(captions(), expected);
+  EXPECT_EQ(run_json({"db", "tag", database_, name(0), "--add-caption", "one more"})["changed"], 0);
+  run_json({"db", "tag", database_, name(0), "--set-caption", "new", "--add-caption", "newer"});
+  EXPECT_EQ(captions(), (nlohmann::json{"new", "newer"}));
+}
+
+TEST_F(DbCommandsTest, InfoRoundsAndLeavesNoFilesBeside) {
+  const ProgramResult info = run_program({"db", "info", database_});
+  const size_t at = info.output.find("minutes ");
+  ASSERT_NE(at, std::string::npos) << info.output;
+  const std::string line = info.output.substr(at, info.output.find('\n', at) - at);
+  EXPECT_LE(line.size() - line.find_last_of(' '), 5u) << line;
+  EXPECT_TRUE(run_json({"db", "info", database_})["minutes"].is_number());
+  for (const char* ending : {"-wal", "-shm"}) {
+    EXPECT_FALSE(std::filesystem::exists(database_ + ending)) << ending;
+  }
 }
 
 TEST_F(DbCommandsTest, ExportMergeAddAndCheckWorkTogether) {
