@@ -228,6 +228,8 @@ CheckReport check_database(const std::string& path, const Monitor& monitor) {
   const SqliteConnection connection(path, SqliteMode::read_only);
   check_schema(connection);
   require_readable_schema(connection);
+  // The check of the words needs temporary tables, which query_only refuses as well.
+  connection.execute("PRAGMA query_only = OFF");
   // All parts look at one state, whatever other programs write.
   connection.execute("BEGIN");
   return Checker(connection, monitor).check();
