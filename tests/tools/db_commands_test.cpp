@@ -129,7 +129,7 @@ TEST_F(DbCommandsTest, RemoveAsksBeforeItTakesSeveral) {
 
 TEST_F(DbCommandsTest, DryRunShowsWhatRemoveWouldTake) {
   const ProgramResult shown =
-      run_program({"db", "remove", database_, "--source", "procedural", "--dry-run"});
+      run_program({"db", "remove", database_, "--licence", "MIT", "--dry-run"});
   EXPECT_EQ(shown.exit_code, 0) << shown.errors;
   EXPECT_NE(shown.output.find("would remove " + name(0) + "\n"), std::string::npos);
   EXPECT_NE(shown.output.find("12 clips would be removed, 0 clips left"), std::string::npos)
