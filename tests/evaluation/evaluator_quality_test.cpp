@@ -48,7 +48,7 @@ TEST(NearestContents, FindTwinsButNotTheOwnGroup) {
   // Of the own group: never found.
   EXPECT_THROW(evaluation::nearest_contents(evaluator, {clips[0]}, {clips[0]}), Error);
   const evaluation::ContentAccuracy accuracy =
-      content_accuracy({1, 0, -1, 1, 1}, {true, true, true, true, false});
+      evaluation::content_accuracy({1, 0, -1, 1, 1}, {true, true, true, true, false});
   EXPECT_EQ(accuracy.motions, 3);
   EXPECT_EQ(accuracy.right, 2);
   EXPECT_NEAR(accuracy.standard_error, std::sqrt(2. / 27), 1e-12);

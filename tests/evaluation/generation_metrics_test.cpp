@@ -153,7 +153,7 @@ TEST(Multimodality, ByHand) {
 }
 
 TEST(Figures, MeanAndInterval) {
-  const evaluation::Figure figure = figure_of({1, 2, 3, 6});
+  const evaluation::Figure figure = evaluation::figure_of({1, 2, 3, 6});
   EXPECT_NEAR(figure.mean, 3, 1e-12);
   EXPECT_NEAR(figure.interval, 1.96 * std::sqrt(14.0 / 4) / 2, 1e-12);
 }
@@ -169,7 +169,7 @@ evaluation::EmbeddedPairs perfect_pairs(int64_t count) {
 TEST(MeasurePairs, IdenticalSetsArePerfectAndShuffledOnesChance) {
   evaluation::EmbeddedPairs pairs = perfect_pairs(640);
   const evaluation::GenerationFigureOptions options;
-  evaluation::GenerationFigures figures = measure_pairs({pairs}, options);
+  evaluation::GenerationFigures figures = evaluation::measure_pairs({pairs}, options);
   EXPECT_EQ(figures.motions, 640);
   EXPECT_EQ(figures.ranked, 640);
   EXPECT_NEAR(figures.fid.mean, 0, 1e-6);
@@ -177,7 +177,7 @@ TEST(MeasurePairs, IdenticalSetsArePerfectAndShuffledOnesChance) {
   for (const evaluation::Figure& top : figures.r_precision) EXPECT_NEAR(top.mean, 1, 1e-12);
 
   pairs.motion = pairs.motion.roll(7, 0);
-  figures = measure_pairs({pairs}, options);
+  figures = evaluation::measure_pairs({pairs}, options);
   EXPECT_NEAR(figures.fid.mean, 0, 1e-6);
   for (int k = 1; k <= evaluation::kMostRank; ++k) {
     const double chance = k / 32.0;
@@ -196,16 +196,16 @@ TEST(MeasurePairs, MembersAreRankedAmongAll) {
   for (size_t i = 0; i < 64; ++i) (i < 32 ? wrong : right)[i] = true;
   evaluation::GenerationFigureOptions options;
   options.draws = 4;
-  const auto good = measure_pairs({pairs}, options, right);
-  const auto bad = measure_pairs({pairs}, options, wrong);
+  const auto good = evaluation::measure_pairs({pairs}, options, right);
+  const auto bad = evaluation::measure_pairs({pairs}, options, wrong);
   EXPECT_EQ(good.motions, 32);
   EXPECT_EQ(good.ranked, 32);
   EXPECT_NEAR(good.r_precision[0].mean, 1, 1e-12);
   EXPECT_NEAR(good.fid.mean, 0, 1e-6);
   EXPECT_LT(bad.r_precision[0].mean, 0.1);
   EXPECT_GT(bad.fid.mean, 0.1);
-  EXPECT_EQ(measure_pairs({pairs}, options, std::vector<bool>(64, false)).motions, 0);
-  EXPECT_THROW(measure_pairs({pairs}, options, std::vector<bool>(3)), Error);
+  EXPECT_EQ(evaluation::measure_pairs({pairs}, options, std::vector<bool>(64, false)).motions, 0);
+  EXPECT_THROW(evaluation::measure_pairs({pairs}, options, std::vector<bool>(3)), Error);
 }
 
 TEST(MeasurePairs, RunsTakeTurns) {
@@ -213,13 +213,13 @@ TEST(MeasurePairs, RunsTakeTurns) {
   bad.motion = bad.motion + 3;
   evaluation::GenerationFigureOptions options;
   options.draws = 4;
-  const auto figures = measure_pairs({good, bad}, options);
+  const auto figures = evaluation::measure_pairs({good, bad}, options);
   EXPECT_NEAR(figures.fid.mean, 9 * 16 / 2.0, 1e-3);
   EXPECT_NEAR(figures.fid.interval, 1.96 * 72 / 2, 1e-3);
 }
 
 TEST(MeasurePairs, WithoutFullBatchRPrecisionIsNoNumber) {
-  const auto figures = measure_pairs({perfect_pairs(20)}, {});
+  const auto figures = evaluation::measure_pairs({perfect_pairs(20)}, {});
   EXPECT_TRUE(std::isnan(figures.r_precision[0].mean));
   EXPECT_NEAR(figures.mm_dist.mean, 0, 1e-9);
 }

@@ -33,7 +33,7 @@ TEST(RetrievalTable, HandMadeNeighbours) {
 TEST(RetrievalTable, NeverReturnsAnExcludedMotion) {
   torch::manual_seed(51);
   const int64_t count = 60;
-  auto motions = retriever::unit_rows(count, 8);
+  auto motions = unit_rows(count, 8);
   std::vector<int> groups;
   for (int64_t i = 0; i < count; ++i) groups.push_back(static_cast<int>(i / 3));
   motions[7] = motions[30];  // a duplicate in another group
@@ -64,12 +64,11 @@ TEST(RetrievalTable, NeverReturnsAnExcludedMotion) {
 TEST(RetrievalTable, DrawsUniformCountsAndSomeNoise) {
   torch::manual_seed(52);
   const int64_t count = 150;
-  const auto motions = retriever::unit_rows(count, 16);
+  const auto motions = unit_rows(count, 16);
   std::vector<int> groups(count);
   for (int i = 0; i < count; ++i) groups[i] = i;
   const training::RetrievalTable table = training::build_retrieval_table(
-      {retriever::unit_rows(1, 16), retriever::unit_rows(1, 16), {{-1}, {}}}, motions,
-      {groups, {}});
+      {unit_rows(1, 16), unit_rows(1, 16), {{-1}, {}}}, motions, {groups, {}});
   std::set<int64_t> best;
   for (int i = 0; i < 20; ++i) best.insert(table.neighbours[0][i].item<int64_t>());
   CounterRandom random(9);

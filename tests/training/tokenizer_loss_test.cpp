@@ -77,7 +77,7 @@ TEST_F(TokenizerLossTest, FeetCountOnlyInContact) {
 TEST_F(TokenizerLossTest, BonesAreMeasured) {
   const auto b = tokenizer::recover_positions(target(), skeleton_);
   EXPECT_NEAR(loss().bones_term(b * 2, b).item<double>(),
-              (0.5 * bone_lengths(b, skeleton_).square()).mean().item<double>(), 1e-6);
+              (0.5 * tokenizer::bone_lengths(b, skeleton_).square()).mean().item<double>(), 1e-6);
   EXPECT_NEAR(loss().bones_term(b + 3, b).item<double>(), 0, 1e-9);
 }
 
