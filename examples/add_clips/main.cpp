@@ -22,11 +22,12 @@ int main(int argc, char** argv) {
       std::printf("left out %s: %s\n", file.file.c_str(), file.reason.c_str());
     }
     const remomask::IndexReport indexed = remomask::index_database(argv[2], argv[1]);
-    std::printf("%lld clips embedded\n", static_cast<long long>(indexed.embedded));
+    std::printf("embedded: %lld\n", static_cast<long long>(indexed.embedded));
 
     remomask::SearchQuery query;
     query.text = argv[4];
     query.k = 1;
+    query.filter.tags = {"new"};
     for (const remomask::MotionHit& hit : remomask.search(query).hits) {
       std::printf("found: %s  %.3f\n", hit.clip.name.c_str(), hit.similarity);
     }
