@@ -11,13 +11,13 @@
 namespace remomask {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
-json schema_file(const std::string& name) {
-  return json::parse(read_file(std::string(REMOMASK_SOURCE_DIR) + "/docs/schema/" + name));
+Json schema_file(const std::string& name) {
+  return Json::parse(read_file(std::string(REMOMASK_SOURCE_DIR) + "/docs/schema/" + name));
 }
 
-bool has_type(const json& value, const std::string& type) {
+bool has_type(const Json& value, const std::string& type) {
   return (type == "object" && value.is_object()) || (type == "array" && value.is_array()) ||
          (type == "string" && value.is_string()) || (type == "boolean" && value.is_boolean()) ||
          (type == "null" && value.is_null()) || (type == "number" && value.is_number()) ||
@@ -26,7 +26,7 @@ bool has_type(const json& value, const std::string& type) {
 
 /// What of JSON Schema 2020-12 the files of docs/schema use; members that a schema does not name
 /// are refused, so that none is forgotten there. Returns what is wrong, or nothing.
-std::string find_fault(const json& schema, const json& value, const std::string& place) {
+std::string find_fault(const Json& schema, const Json& value, const std::string& place) {
   if (schema.contains("$ref")) return find_fault(schema_file(schema["$ref"]), value, place);
   if (schema.contains("const") && value != schema["const"]) return place + ": another constant";
   if (schema.contains("enum") &&
@@ -35,17 +35,17 @@ std::string find_fault(const json& schema, const json& value, const std::string&
   }
   if (schema.contains("anyOf")) {
     std::string fault;
-    for (const json& one : schema["anyOf"]) {
+    for (const Json& one : schema["anyOf"]) {
       fault = find_fault(one, value, place);
       if (fault.empty()) return "";
     }
     return fault;
   }
   if (schema.contains("type")) {
-    const json& type = schema["type"];
-    const json types = type.is_array() ? type : json::array({type});
+    const Json& type = schema["type"];
+    const Json types = type.is_array() ? type : Json::array({type});
     if (std::none_of(types.begin(), types.end(),
-                     [&](const json& name) { return has_type(value, name); })) {
+                     [&](const Json& name) { return has_type(value, name); })) {
       return place + ": " + value.dump().substr(0, 40) + " is not of type " + type.dump();
     }
   }
@@ -57,7 +57,7 @@ std::string find_fault(const json& schema, const json& value, const std::string&
     }
   }
   if (!value.is_object() || !schema.contains("properties")) return "";
-  for (const json& name : schema.value("required", json::array())) {
+  for (const Json& name : schema.value("required", Json::array())) {
     if (!value.contains(name)) return place + ": " + name.dump() + " is missing";
   }
   for (const auto& [name, member] : value.items()) {
@@ -68,25 +68,25 @@ std::string find_fault(const json& schema, const json& value, const std::string&
   return "";
 }
 
-std::string fault_of(const std::string& file, const json& answer) {
+std::string fault_of(const std::string& file, const Json& answer) {
   return find_fault(schema_file(file), answer, file);
 }
 
 TEST(Schema, TheCheckFindsFaults) {
-  const json schema = {
+  const Json schema = {
       {"type", "object"}, {"properties", {{"a", {{"type", "integer"}}}}}, {"required", {"a"}}};
   EXPECT_EQ(find_fault(schema, {{"a", 1}}, ""), "");
   EXPECT_NE(find_fault(schema, {{"a", "1"}}, ""), "");
-  EXPECT_NE(find_fault(schema, json::object(), ""), "");
+  EXPECT_NE(find_fault(schema, Json::object(), ""), "");
   EXPECT_NE(find_fault(schema, {{"a", 1}, {"b", 2}}, ""), "");
 }
 
 TEST(Schema, DescribesMotions) {
   const ScratchFolder folder;
-  const json made = run_json({"generate", "a person walks forward", "--seconds", "2", "--best-of",
+  const Json made = run_json({"generate", "a person walks forward", "--seconds", "2", "--best-of",
                               "2", "--influence", "-o", folder.path("walk.npy")});
   EXPECT_EQ(fault_of("motions.json", made), "");
-  EXPECT_EQ(fault_of("motion.json", json::parse(read_file(folder.path("walk.npy.json")))), "");
+  EXPECT_EQ(fault_of("motion.json", Json::parse(read_file(folder.path("walk.npy.json")))), "");
   EXPECT_EQ(fault_of("motions.json", run_json({"generate", "a person bows", "--length", "likely",
                                                "--no-retrieval", "-o", folder.path("bow.npy")})),
             "");
@@ -115,7 +115,7 @@ TEST(Schema, DescribesDatabases) {
   run_json({"db", "export", database, folder.path("clips"), "--format", "npy"});
   for (const auto& entry : std::filesystem::directory_iterator(folder.path("clips"))) {
     if (entry.path().extension() != ".npy") continue;
-    const json made = run_json({"convert", entry.path().string(), folder.path("walk.bvh")});
+    const Json made = run_json({"convert", entry.path().string(), folder.path("walk.bvh")});
     EXPECT_EQ(fault_of("convert.json", made), "");
     break;
   }
@@ -125,10 +125,10 @@ TEST(Schema, DescribesModels) {
   const ScratchFolder folder;
   const std::string database = folder.path("motions.sqlite");
   run_json({"procedural", "--db", database, "--count", "60"});
-  const json trained = run_json({"train", "evaluator", "--db", database, "--preset", "tiny",
+  const Json trained = run_json({"train", "evaluator", "--db", database, "--preset", "tiny",
                                  "--steps", "2", "--seed", "7", "-o", folder.path("run")});
   EXPECT_EQ(fault_of("train.json", trained), "");
-  const json info = run_json({"info", trained.at("file")});
+  const Json info = run_json({"info", trained.at("file")});
   EXPECT_EQ(fault_of("model_info.json", info), "");
   EXPECT_EQ(info.dump().find("\"seed\":7"), std::string::npos) << "seeds are strings";
 }
@@ -136,7 +136,7 @@ TEST(Schema, DescribesModels) {
 TEST(Schema, DescribesErrors) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"--json", "genrate"}, {"--json", "info", "absent.sqlite"}}) {
-    EXPECT_EQ(fault_of("error.json", json::parse(run_program(arguments).output)), "");
+    EXPECT_EQ(fault_of("error.json", Json::parse(run_program(arguments).output)), "");
   }
 }
 
