@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "base/counted.h"
-#include "drawing/contact_sheet.h"
 #include "pipeline/motion_document.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
-#include "remomask/text_to_motion.h"
 #include "tools/edit_command.h"
 #include "tools/edit_spans.h"
 #include "tools/evidence_text.h"
+#include "tools/generation_run.h"
 #include "tools/output_path.h"
 
 namespace remomask::tools {
@@ -33,11 +32,8 @@ void run_edit(const EditCommand& command, Program& program) {
     throw Error("there is nothing to edit; name a --span, --parts, --cells or --extend");
   }
   const Monitor monitor = program.monitor();
-  OpenOptions open;
-  open.index = command.files.index;
-  open.threads = program.threads;
-  open.retrieval = needs_search(command.generation);
-  const TextToMotion remomask(command.files.model_path(), command.files.database_path(), open);
+  const TextToMotion remomask =
+      open_model(command.files, program, needs_search(command.generation));
   nlohmann::json motions = nlohmann::json::array();
   std::vector<drawing::SheetRow> rows = {{"before", command.input, original}};
   for (int i = 0; i < command.count; ++i) {
@@ -46,10 +42,7 @@ void run_edit(const EditCommand& command, Program& program) {
     try {
       made = remomask.edit(original, spans, command.prompt, options, monitor);
     } catch (const Interrupted&) {
-      throw Interrupted(
-          fmt::format("stopped; {} of {} are stored; --seed {} --count {} makes the "
-                      "others",
-                      i, counted(command.count, "motion"), options.seed, command.count - i));
+      stop_after(i, command.count, options.seed);
     }
     program.finish_progress();
     made.original = command.input;
@@ -57,10 +50,7 @@ void run_edit(const EditCommand& command, Program& program) {
     const std::string path = sample_path(command.output, i, command.count);
     if (command.count > 1) command.overwrite.check(path, command.input, program);
     save_motion(path, made);
-    nlohmann::json entry = pipeline::motion_document(made);
-    entry["file"] = path;
-    entry["seconds_of_work"] = seconds;
-    motions.push_back(std::move(entry));
+    motions.push_back(answer_entry(pipeline::motion_document(made), path, seconds));
     rows.push_back({command.prompt, evidence_line(made.evidence), made.motion});
     ++options.seed;
     if (program.json) continue;
@@ -72,11 +62,8 @@ void run_edit(const EditCommand& command, Program& program) {
                  made.path_shift_metres, made.path_turn_degrees);
     }
   }
-  if (!command.sheet.empty()) {
-    drawing::write_contact_sheet(command.sheet, rows);
-    if (!program.json) fmt::print("{}: contact sheet\n", command.sheet);
-  }
-  program.print_json({{"schema", "remomask.motions/1"}, {"motions", motions}});
+  finish_sheet(command.sheet, rows, program);
+  print_motions(program, std::move(motions));
 }
 
 }  // namespace remomask::tools

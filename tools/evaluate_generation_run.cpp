@@ -9,8 +9,8 @@
 #include "index/vector_index.h"
 #include "nn/model_file.h"
 #include "pipeline/motion_embedding.h"
-#include "remomask/text_to_motion.h"
 #include "tools/evaluate_command.h"
+#include "tools/generation_run.h"
 #include "tools/index_path.h"
 
 namespace remomask::tools {
@@ -88,10 +88,7 @@ void run_evaluate_generation(const EvaluateGenerationCommand& options, Program& 
   const std::string model_path = options.files.model_path();
   const evaluation::Evaluator evaluator =
       evaluation::load_evaluator(options.evaluator.evaluator_path());
-  OpenOptions open;
-  open.index = options.files.index;
-  open.threads = program.threads;
-  const TextToMotion remomask(model_path, options.files.database_path(), open);
+  const TextToMotion remomask = open_model(options.files, program);
   const db::Database database(options.files.database_path(), db::OpenMode::read_only);
   const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
   const auto index =

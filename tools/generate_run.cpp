@@ -5,13 +5,12 @@
 
 #include "base/counted.h"
 #include "base/file.h"
-#include "drawing/contact_sheet.h"
 #include "pipeline/motion_document.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
-#include "remomask/text_to_motion.h"
 #include "tools/evidence_text.h"
 #include "tools/generate_command.h"
+#include "tools/generation_run.h"
 #include "tools/output_path.h"
 
 namespace remomask::tools {
@@ -59,23 +58,6 @@ void print_script(const std::string& path, const ScriptedMotion& made, double se
   }
 }
 
-nlohmann::json answer_entry(nlohmann::json document, const std::string& path, double seconds) {
-  document["file"] = path;
-  document["seconds_of_work"] = seconds;
-  return document;
-}
-
-void print_answer(Program& program, nlohmann::json motions) {
-  program.print_json({{"schema", "remomask.motions/1"}, {"motions", std::move(motions)}});
-}
-
-void finish_sheet(const std::string& path, const std::vector<drawing::SheetRow>& rows,
-                  const Program& program) {
-  if (path.empty()) return;
-  drawing::write_contact_sheet(path, rows);
-  if (!program.json) fmt::print("{}: contact sheet\n", path);
-}
-
 void run_script(const GenerateCommand& command, const TextToMotion& remomask,
                 const GenerateOptions& options, Program& program) {
   const auto start = Clock::now();
@@ -94,18 +76,15 @@ void run_script(const GenerateCommand& command, const TextToMotion& remomask,
   finish_sheet(command.sheet, rows, program);
   nlohmann::json entry = answer_entry(pipeline::motion_document(made), command.output, seconds);
   entry["script_file"] = command.script;
-  print_answer(program, nlohmann::json::array({entry}));
+  print_motions(program, nlohmann::json::array({entry}));
 }
 
 }  // namespace
 
 void run_generate(const GenerateCommand& command, Program& program) {
   const Monitor monitor = program.monitor();
-  OpenOptions open;
-  open.index = command.files.index;
-  open.threads = program.threads;
-  open.retrieval = needs_search(command.generation);
-  const TextToMotion remomask(command.files.model_path(), command.files.database_path(), open);
+  const TextToMotion remomask =
+      open_model(command.files, program, needs_search(command.generation));
   GenerateOptions options = command.generation.chosen();
   options.evidence = command.filter.filter();
   if (!command.script.empty()) return run_script(command, remomask, options, program);
@@ -117,10 +96,7 @@ void run_generate(const GenerateCommand& command, Program& program) {
     try {
       made = remomask.generate(command.prompt, options, monitor);
     } catch (const Interrupted&) {
-      throw Interrupted(
-          fmt::format("stopped; {} of {} are stored; --seed {} --count {} makes the "
-                      "others",
-                      i, counted(command.count, "motion"), options.seed, command.count - i));
+      stop_after(i, command.count, options.seed);
     }
     program.finish_progress();
     const double seconds = seconds_since(start);
@@ -138,7 +114,7 @@ void run_generate(const GenerateCommand& command, Program& program) {
     ++options.seed;
   }
   finish_sheet(command.sheet, rows, program);
-  print_answer(program, std::move(motions));
+  print_motions(program, std::move(motions));
 }
 
 }  // namespace remomask::tools

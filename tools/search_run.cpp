@@ -3,8 +3,8 @@
 #include "pipeline/motion_document.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
-#include "remomask/text_to_motion.h"
 #include "search/query.h"
+#include "tools/generation_run.h"
 #include "tools/search_command.h"
 
 namespace remomask::tools {
@@ -25,13 +25,6 @@ SearchQuery complete_query(const SearchCommand& options) {
   }
   search::check_query(query);  // before the model is loaded
   return query;
-}
-
-TextToMotion open_search(const SearchCommand& options, const Program& program) {
-  OpenOptions open;
-  open.index = options.files.index;
-  open.threads = program.threads;
-  return TextToMotion(options.files.model_path(), options.files.database_path(), open);
 }
 
 nlohmann::json query_json(const SearchCommand& options) {
@@ -81,7 +74,7 @@ void print_answer(const SearchAnswer& answer) {
 
 void search_clips(const SearchCommand& options, Program& program) {
   const SearchQuery query = complete_query(options);
-  const SearchAnswer answer = open_search(options, program).search(query);
+  const SearchAnswer answer = open_model(options.files, program).search(query);
   if (!program.json) {
     print_answer(answer);
     if (answer.unsearched > 0) {
@@ -104,7 +97,7 @@ void search_clips(const SearchCommand& options, Program& program) {
 
 void search_captions(const SearchCommand& options, Program& program) {
   const SearchQuery query = complete_query(options);
-  const std::vector<CaptionHit> hits = open_search(options, program).captions_for(query);
+  const std::vector<CaptionHit> hits = open_model(options.files, program).captions_for(query);
   if (!program.json) {
     if (hits.empty()) fmt::print("no clip with captions passes the filters\n");
     for (const CaptionHit& hit : hits) {
