@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "base/random.h"
+#include "base/time.h"
 #include "bench/machine_peak.h"
 #include "bench/model_work.h"
 #include "bench/random_model.h"
@@ -24,7 +25,7 @@ namespace {
 
 const char* const kPrompt =
     "a person walks forward, then turns around and waves with the left hand";
-constexpr double kSeconds = 9.8;
+constexpr double kSeconds = kMaxClipSeconds;
 
 struct BenchModel {
   std::string label;
@@ -78,13 +79,13 @@ GenerationWork generation_work(const BenchModel& model, const pipeline::Generato
   const ConditionSize condition{generator.retriever().encode_text({kPrompt}).states.size(1),
                                 generator.max_hits()};
   GenerationWork work;
-  work.base = sample_base_flops(masked, options, condition, generator::kLongestTokenMap);
+  work.base = sample_base_flops(masked, options, condition, kMaxTokenFrames);
   if (tokenizer.levels > 1) {
     work.residual =
         sample_residual_flops(generator::residual_config(model.stages.at("residual").config),
-                              options, condition, generator::kLongestTokenMap);
+                              options, condition, kMaxTokenFrames);
   }
-  work.decode = decode_flops(tokenizer, generator::kLongestTokenMap);
+  work.decode = decode_flops(tokenizer, kMaxTokenFrames);
   return work;
 }
 

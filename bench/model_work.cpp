@@ -1,5 +1,6 @@
 #include "bench/model_work.h"
 
+#include "base/time.h"
 #include "remomask/error.h"
 #include "tokenizer/part_map.h"
 #include "tokenizer/tokenizer_network.h"
@@ -26,7 +27,7 @@ double common_products(const tokenizer::TokenizerConfig& config) {
     throw Error("the work of a tokenizer is only known for one time scale");
   }
   const int64_t width = config.widths[0], rows = config.rows;
-  const int64_t each_row = tokenizer::kFramesPerToken * row_channels(config) * width +
+  const int64_t each_row = kFramesPerToken * row_channels(config) * width +
                            config.blocks[0] * 4 * width * width + 3 * width * config.code_width;
   const int64_t mixer = rows > 1 ? 2 * rows * width * config.mixer_width : 0;
   return static_cast<double>(rows * each_row + mixer);
@@ -95,7 +96,7 @@ double encode_flops(const tokenizer::TokenizerConfig& config, int64_t frames) {
 
 double decode_flops(const tokenizer::TokenizerConfig& config, int64_t frames) {
   const int64_t smooth =
-      tokenizer::kFramesPerToken * config.rows * 2 * 3 * row_channels(config) * config.smooth_width;
+      kFramesPerToken * config.rows * 2 * 3 * row_channels(config) * config.smooth_width;
   return 2.0 * static_cast<double>(frames) *
          (common_products(config) + static_cast<double>(smooth));
 }

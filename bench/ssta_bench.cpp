@@ -7,6 +7,7 @@
 #include <torch/types.h>
 
 #include "base/machine.h"
+#include "base/time.h"
 #include "bench/machine_peak.h"
 #include "bench/model_work.h"
 #include "nn/threads.h"
@@ -46,7 +47,7 @@ void run_stack(benchmark::State& state, bool with_gradients) {
   stack->initialise();
   stack->train(with_gradients);
   const generator::Condition condition = random_unit_condition(config, batch);
-  auto x = torch::randn({batch, generator::kLongestTokenMap * config.rows, config.width});
+  auto x = torch::randn({batch, kMaxTokenFrames * config.rows, config.width});
   x.requires_grad_(with_gradients);
   const torch::AutoGradMode gradients(with_gradients);
   for (auto _ : state) {
@@ -58,9 +59,8 @@ void run_stack(benchmark::State& state, bool with_gradients) {
     benchmark::DoNotOptimize(y.data_ptr<float>());
   }
   const double forward =
-      static_cast<double>(batch) *
-      (prepare_flops(config, model.layers, kCondition) +
-       stack_flops(config, model.layers, kCondition, generator::kLongestTokenMap));
+      static_cast<double>(batch) * (prepare_flops(config, model.layers, kCondition) +
+                                    stack_flops(config, model.layers, kCondition, kMaxTokenFrames));
   state.SetItemsProcessed(state.iterations() * batch);
   report_arithmetic(state, with_gradients ? 3 * forward : forward);
 }

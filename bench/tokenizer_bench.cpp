@@ -5,6 +5,7 @@
 #include <torch/types.h>
 
 #include "base/machine.h"
+#include "base/time.h"
 #include "bench/long_walk.h"
 #include "bench/machine_peak.h"
 #include "bench/model_work.h"
@@ -16,7 +17,7 @@
 namespace remomask {
 namespace {
 
-constexpr int kFrames = static_cast<int>(generator::kLongestTokenMap * tokenizer::kFramesPerToken);
+constexpr int kFrames = static_cast<int>(kMaxTokenFrames * kFramesPerToken);
 
 const tokenizer::Tokenizer& base_tokenizer() {
   static const tokenizer::Tokenizer tokenizer = [] {
@@ -34,18 +35,18 @@ void encode(benchmark::State& state) {
       long_walk(kFrames), humanml_skeleton(), motion::FeatureMode::fixed);
   for (auto _ : state) benchmark::DoNotOptimize(tokenizer.encode(features));
   state.SetItemsProcessed(state.iterations() * kFrames);
-  report_arithmetic(state, encode_flops(tokenizer.config(), generator::kLongestTokenMap));
+  report_arithmetic(state, encode_flops(tokenizer.config(), kMaxTokenFrames));
 }
 
 void decode(benchmark::State& state) {
   nn::set_compute_threads(static_cast<int>(state.range(0)));
   const tokenizer::Tokenizer& tokenizer = base_tokenizer();
   const tokenizer::TokenizerConfig& config = tokenizer.config();
-  const at::Tensor tokens = torch::randint(
-      config.codes, {generator::kLongestTokenMap, config.rows, config.levels}, torch::kLong);
+  const at::Tensor tokens =
+      torch::randint(config.codes, {kMaxTokenFrames, config.rows, config.levels}, torch::kLong);
   for (auto _ : state) benchmark::DoNotOptimize(tokenizer.decode(tokens));
   state.SetItemsProcessed(state.iterations() * kFrames);
-  report_arithmetic(state, decode_flops(config, generator::kLongestTokenMap));
+  report_arithmetic(state, decode_flops(config, kMaxTokenFrames));
 }
 
 void one_and_all_threads(benchmark::internal::Benchmark* bench) {

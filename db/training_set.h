@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/time.h"
 #include "db/database.h"
 #include "motion/features.h"
 
@@ -31,7 +32,7 @@ struct TrainingSetOptions {
   motion::FeatureMode mode = motion::FeatureMode::fixed;
   bool add_mirrored = true;  ///< twins for clips whose mirror is not stored
   int min_frames = 20;
-  int max_frames = 196;  ///< longer clips are cut at the end
+  int max_frames = kMaxClipFrames;  ///< longer clips are cut at the end
 };
 
 /// What the clip shows in one word or phrase: its label "content", else its

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "base/preset.h"
+#include "base/time.h"
+#include "motion/feature_mode_json.h"
 #include "motion/features.h"
 
 namespace remomask::evaluation {
@@ -22,7 +24,7 @@ struct EvaluatorConfig {
   int64_t word_width = 96;
   int64_t embedding = 128;  ///< E
   int64_t max_words = 20;   ///< of a caption that are read
-  int64_t max_frames = 196;
+  int64_t max_frames = kMaxClipFrames;
   /// Root velocity and height count this many times more than their deviation.
   double root_weight = 5;
   std::vector<std::string> vocabulary;  ///< "sos", "eos", "unk", words; made by the training
@@ -32,7 +34,8 @@ struct EvaluatorConfig {
 /// Throws Error for another name.
 EvaluatorConfig evaluator_preset(ModelSize size);
 
-void to_json(nlohmann::json& json, const EvaluatorConfig& config);
-void from_json(const nlohmann::json& json, EvaluatorConfig& config);
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EvaluatorConfig, preset, skeleton, mode, movement_width,
+                                   motion_hidden, text_hidden, word_width, embedding, max_words,
+                                   max_frames, root_weight, vocabulary)
 
 }  // namespace remomask::evaluation

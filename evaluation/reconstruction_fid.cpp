@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/time.h"
 #include "evaluation/generation_metrics.h"
 #include "tokenizer/tokenizer_network.h"
 
@@ -30,7 +31,7 @@ ReconstructionFid measure_reconstruction_fid(const Evaluator& evaluator,
   const Skeleton& skeleton = skeleton_named(tokenizer.config().skeleton);
   std::vector<motion::Features> original;
   for (const motion::Features* clip : clips) {
-    const int frames = clip->frames - clip->frames % static_cast<int>(tokenizer::kFramesPerToken);
+    const int frames = clip->frames - clip->frames % static_cast<int>(kFramesPerToken);
     if (frames == 0) continue;
     motion::Features cut(frames, clip->dim);
     std::copy_n(clip->values.begin(), cut.values.size(), cut.values.begin());

@@ -2,6 +2,7 @@
 
 #include <torch/types.h>
 
+#include "base/time.h"
 #include "tokenizer/length_batches.h"
 #include "tokenizer/motion_recovery.h"
 
@@ -62,7 +63,7 @@ TokenizerMetrics measure_tokenizer(tokenizer::TokenizerNetwork& network,
   TokenizerMetrics metrics;
   auto hits = torch::zeros({config.levels, groups, config.codes}, torch::kDouble);
   for (const tokenizer::LengthBatch& batch :
-       tokenizer::batches_by_length(clips, tokenizer::kFramesPerToken, kMetricBatch)) {
+       tokenizer::batches_by_length(clips, kFramesPerToken, kMetricBatch)) {
     const auto features = tokenizer::stack_batch(clips, batch);
     const auto target = tokenizer::recover_positions(features, skeleton);
     const auto tokens = network->tokens(network->normalise(features));

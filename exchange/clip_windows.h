@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "base/time.h"
+
 namespace remomask::exchange {
 
 /// Frames [first, last) of a longer motion.
@@ -11,13 +13,13 @@ struct ClipWindow {
 };
 
 struct WindowOptions {
-  int min_frames = 20, max_frames = 196, overlap = 40;
+  int min_frames = 20, max_frames = kMaxClipFrames, overlap = 40;
 };
 
 /// A motion of up to max_frames + kWindowSlack frames stays whole: the networks
 /// drop the last 0.2 s of such a clip, two clips for them would be worse (and
 /// HumanML3D holds clips of 199 frames).
-constexpr int kWindowSlack = 4;
+constexpr int kWindowSlack = kMaxStoredFrames - kMaxClipFrames;
 
 /// Cuts `frames` frames into windows of max_frames that overlap; every frame is
 /// in one. The last is flush with the end. Where it would bring fewer than

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/counted.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "exchange/humanml_texts.h"
@@ -191,9 +192,9 @@ std::vector<PreparedClip> HumanmlFolder::prepare(size_t i,
         whole ? motion.frames
               : static_cast<int>(std::min<double>(timed.to * skeleton->fps, motion.frames));
     if (!whole && last - first < options_.min_frames) {
-      warnings.push_back(fmt::format("{}: part {} has {} frames, at least {} are needed: left out",
-                                     text_path(id), name, std::max(0, last - first),
-                                     options_.min_frames));
+      warnings.push_back(
+          fmt::format("{}: part {} has {}, at least {} are needed: left out", text_path(id), name,
+                      counted(std::max(0, last - first), "frame"), options_.min_frames));
       continue;
     }
     auto& part = parts.emplace(std::pair(first, last), CaptionedPart{name, {}}).first->second;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/time.h"
 #include "db/database.h"
 #include "remomask/library.h"
 #include "remomask/progress.h"
@@ -17,7 +18,7 @@ struct ImportOptions {
   std::string licence;
   std::string skeleton_map;  ///< as in MotionFileOptions
   int min_frames = 20;
-  int max_frames = 196;
+  int max_frames = kMaxClipFrames;
   int window_overlap = 40;  ///< frames shared by neighbouring windows of a long clip
   int threads = 1;
 };

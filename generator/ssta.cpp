@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "base/time.h"
 #include "generator/biased_attention.h"
 #include "generator/dropout.h"
 #include "nn/layers.h"
@@ -104,8 +105,8 @@ at::Tensor relative_position_index(int64_t frames, int64_t rows) {
   const auto token = torch::arange(frames * rows, torch::kLong);
   const auto time = torch::floor_divide(token, rows), row = token.remainder(rows);
   const auto distance = (time.unsqueeze(0) - time.unsqueeze(1))
-                            .clamp(1 - kLongestTokenMap, kLongestTokenMap - 1)
-                            .add(kLongestTokenMap - 1);
+                            .clamp(1 - kMaxTokenFrames, kMaxTokenFrames - 1)
+                            .add(kMaxTokenFrames - 1);
   return ((distance * rows + row.unsqueeze(1)) * rows + row.unsqueeze(0)).reshape({-1});
 }
 
@@ -118,7 +119,7 @@ SstaImpl::SstaImpl(const SstaConfig& config)
       output_(register_module("output", torch::nn::Linear(config.width, config.width))),
       position_bias_(register_module(
           "position_bias",
-          torch::nn::Embedding((2 * kLongestTokenMap - 1) * config.rows * config.rows,
+          torch::nn::Embedding((2 * kMaxTokenFrames - 1) * config.rows * config.rows,
                                config.heads))),
       kind_bias_(register_module("kind_bias",
                                  torch::nn::Embedding(condition_kinds(config), config.heads))) {

@@ -24,10 +24,6 @@ struct SstaConfig {
   std::string attention = "ssta";  ///< or "joined" (joined_stack.h)
 };
 
-/// Longest token map in frames of four poses; relative distances are clipped to
-/// +-(kLongestTokenMap - 1).
-constexpr int64_t kLongestTokenMap = 49;
-
 /// Throws Error when the width does not fit the heads or the kind of attention
 /// is unknown.
 void check_attention_sizes(const SstaConfig& config);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/time.h"
 #include "generator/ssta.h"
 #include "remomask/error.h"
 
@@ -22,8 +23,8 @@ std::vector<TokenWindow> plan_windows(const at::Tensor& known, int64_t first, in
   while (before < std::min(kContextTokens, first) && is_known[first - 1 - before]) ++before;
   while (after < std::min(kContextTokens, frames - last) && is_known[last + after]) ++after;
   const int64_t length = last - first;
-  if (before + length + after <= kLongestTokenMap) return {{first - before, last + after}};
-  const int64_t most = kLongestTokenMap - 2 * kContextTokens;
+  if (before + length + after <= kMaxTokenFrames) return {{first - before, last + after}};
+  const int64_t most = kMaxTokenFrames - 2 * kContextTokens;
   const int64_t pieces = (length + most - 1) / most;
   std::vector<TokenWindow> windows;
   for (int64_t i = 0; i < pieces; ++i) {

@@ -8,7 +8,7 @@
 namespace remomask::generator {
 
 /// Token frames [first, last) that the transformers see at once, at most
-/// kLongestTokenMap.
+/// kMaxTokenFrames.
 struct TokenWindow {
   int64_t first = 0, last = 0;
 };

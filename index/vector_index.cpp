@@ -73,8 +73,12 @@ struct VectorIndex::Impl {
       }
       type.recall = sample.measure(segments);
     }
-    return std::unique_ptr<Impl>(
-        new Impl{{stamp, std::move(type), width, ids, ""}, "", stamp, std::move(segments)});
+    return std::unique_ptr<Impl>(new Impl{
+        .base =
+            {.stamp = stamp, .type = std::move(type), .width = width, .ids = ids, .checksum = ""},
+        .base_path = "",
+        .stamp = stamp,
+        .segments = std::move(segments)});
   }
 };
 

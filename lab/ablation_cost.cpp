@@ -1,5 +1,6 @@
 #include "lab/ablation_cost.h"
 
+#include "base/time.h"
 #include "retriever/motion_encoder.h"
 #include "tokenizer/tokenizer_network.h"
 
@@ -65,8 +66,7 @@ double training_cost(const training::TrainingRecipe& recipe, const std::string& 
                  static_cast<double>(options.batch);
   } else if (stage == "tokenizer") {
     operations = weights_of(*tokenizer::TokenizerNetwork(recipe.model.tokenizer)) *
-                 static_cast<double>(recipe.tokenizer_training.batch_frames) /
-                 tokenizer::kFramesPerToken;
+                 static_cast<double>(recipe.tokenizer_training.batch_frames) / kFramesPerToken;
   } else if (stage == "masked") {
     operations =
         pass_operations(recipe.model.masked) * static_cast<double>(recipe.masked_training.batch);

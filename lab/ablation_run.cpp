@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "motion/features.h"
+#include "nn/tensor_values.h"
 #include "pipeline/evidence.h"
 #include "remomask/error.h"
 
@@ -22,11 +23,6 @@ namespace fs = std::filesystem;
 constexpr double kGuessedSpeed = 10;  // 10^9 operations a second
 
 std::string job_key(const AblationJob& job) { return fs::path(job.file).filename().string(); }
-
-std::vector<float> row_of(const at::Tensor& matrix, int64_t row) {
-  const at::Tensor vector = matrix[row].contiguous();
-  return {vector.data_ptr<float>(), vector.data_ptr<float>() + vector.numel()};
-}
 
 /// Evidence from the training clips: one clip of each group, none of the prompt's own group.
 class TrainingSource final : public pipeline::EvidenceSource {
@@ -50,8 +46,8 @@ class TrainingSource final : public pipeline::EvidenceSource {
       hit.hit.clip.id = clip;
       hit.hit.rank = static_cast<int>(found.size()) + 1;
       hit.hit.similarity = similarity[clip].item<float>();
-      hit.motion = row_of(data_.motion, clip);
-      hit.text = row_of(data_.motion_text, clip);
+      hit.motion = nn::float_vector(data_.motion[clip]);
+      hit.text = nn::float_vector(data_.motion_text[clip]);
       found.push_back(std::move(hit));
     }
     return found;

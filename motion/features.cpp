@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "motion/feature_layout.h"
 #include "motion/heading.h"
 #include "motion/rest_pose.h"
 #include "motion/rotation.h"
@@ -63,15 +64,6 @@ void write_fixed_rotations(const Motion& motion, int frame, const Quat& facing,
   }
 }
 
-struct Layout {
-  int local, rotation, velocity, contact;
-  explicit Layout(int joints)
-      : local(4),
-        rotation(4 + 3 * (joints - 1)),
-        velocity(4 + 9 * (joints - 1)),
-        contact(4 + 9 * (joints - 1) + 3 * joints) {}
-};
-
 /// Root position and facing rotation (world to facing frame) of every row.
 struct RootPath {
   std::vector<Vec3> positions;
@@ -119,7 +111,7 @@ Features extract_features(const Motion& canonical, const Skeleton& skeleton, Fea
   require_usable(canonical, skeleton);
   const Headings headings = find_headings(canonical, skeleton, mode);
   const int joints = skeleton.joints();
-  const Layout layout(joints);
+  const FeatureLayout layout(skeleton);
   Features features(canonical.frames - 1, skeleton.feature_dim());
   const auto facing_at = [&](int t) {
     return yaw_rotation(-(headings.angles[t] + headings.initial));
@@ -141,16 +133,16 @@ Features extract_features(const Motion& canonical, const Skeleton& skeleton, Fea
       const Vec3 step = to_facing * (joint_position(canonical, t + 1, j) - position);
       const Vec3 local = to_facing * (position - Vec3(root.x(), 0, root.z()));
       for (int axis = 0; axis < 3; ++axis) {
-        row[layout.velocity + j * 3 + axis] = static_cast<float>(step[axis]);
-        if (j > 0) row[layout.local + (j - 1) * 3 + axis] = static_cast<float>(local[axis]);
+        row[layout.velocities + j * 3 + axis] = static_cast<float>(step[axis]);
+        if (j > 0) row[layout.positions + (j - 1) * 3 + axis] = static_cast<float>(local[axis]);
       }
     }
     if (mode == FeatureMode::official) {
-      write_official_rotations(canonical, t, facing, skeleton, row + layout.rotation);
+      write_official_rotations(canonical, t, facing, skeleton, row + layout.rotations);
     } else {
-      write_fixed_rotations(canonical, t, facing, skeleton, row + layout.rotation);
+      write_fixed_rotations(canonical, t, facing, skeleton, row + layout.rotations);
     }
-    float* contact = row + layout.contact;
+    float* contact = row + layout.contacts;
     for (const std::vector<int>* feet : {&skeleton.left_feet, &skeleton.right_feet}) {
       for (int joint : *feet) {
         const double moved =
@@ -177,7 +169,7 @@ Features extract_features_all_frames(const Motion& canonical, const Skeleton& sk
 
 Motion recover_motion(const Features& features, const Skeleton& skeleton) {
   require_dimension(features, skeleton);
-  const Layout layout(skeleton.joints());
+  const FeatureLayout layout(skeleton);
   const RootPath path = recover_root(features);
   Motion motion(features.frames, skeleton.joints());
   motion.fps = skeleton.fps;
@@ -187,7 +179,7 @@ Motion recover_motion(const Features& features, const Skeleton& skeleton) {
     const Quat to_world = path.facing[t].conjugate();
     set_joint_position(motion, t, 0, root);
     for (int j = 1; j < skeleton.joints(); ++j) {
-      const float* local = features.row(t) + layout.local + (j - 1) * 3;
+      const float* local = features.row(t) + layout.positions + (j - 1) * 3;
       set_joint_position(
           motion, t, j,
           to_world * Vec3(local[0], local[1], local[2]) + Vec3(root.x(), 0, root.z()));
@@ -201,7 +193,7 @@ Motion recover_motion_with_next_frame(const Features& features, const Skeleton& 
   if (features.frames == 0) return motion;
   const int last = features.frames - 1;
   const Quat to_world = recover_root(features).facing[last].conjugate();
-  const float* velocity = features.row(last) + Layout(skeleton.joints()).velocity;
+  const float* velocity = features.row(last) + FeatureLayout(skeleton).velocities;
   Motion longer(features.frames + 1, skeleton.joints());
   std::copy(motion.positions.begin(), motion.positions.end(), longer.positions.begin());
   for (int j = 0; j < skeleton.joints(); ++j) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/time.h"
 #include "motion/canonical.h"
 #include "motion/features.h"
 #include "remomask/error.h"
@@ -39,7 +40,7 @@ at::Tensor encode_whole(const Generator& generator, const Motion& original) {
       motion::extract_features_all_frames(motion::canonicalize(original, skeleton), skeleton, mode);
   const std::vector<float> last(features.row(features.frames - 1),
                                 features.row(features.frames - 1) + features.dim);
-  for (; features.frames % tokenizer::kFramesPerToken != 0; ++features.frames) {
+  for (; features.frames % kFramesPerToken != 0; ++features.frames) {
     features.values.insert(features.values.end(), last.begin(), last.end());
   }
   return generator.tokenizer().encode(features);
@@ -53,7 +54,7 @@ at::Tensor unchanged_cells(const motion::PartMask& mask, int64_t frames, int64_t
     for (int64_t row = 0; row < rows; ++row) {
       const bool changes =
           rows == motion::kBodyParts ? mask.has(t, static_cast<int>(row)) : mask.any(t);
-      if (changes) cells[t / tokenizer::kFramesPerToken * rows + row] = false;
+      if (changes) cells[t / kFramesPerToken * rows + row] = false;
     }
   }
   return known;
@@ -69,15 +70,15 @@ Edited edit_motion(const Generator& generator, const Motion& original,
   if (skeleton.name != "humanml3d") {
     throw Error("only models of the skeleton humanml3d can edit, this one is for " + skeleton.name);
   }
-  if (original.frames < tokenizer::kFramesPerToken) {
+  if (original.frames < kFramesPerToken) {
     throw Error("a motion of " + std::to_string(original.frames) +
                 " frames is too short to edit; it needs at least 4");
   }
   Edited result;
   result.mask = edit_mask(original, spans, options.extend_frames);
   const at::Tensor tokens = encode_whole(generator, original);
-  TokenCanvas canvas = generator.canvas((result.mask.frames() + tokenizer::kFramesPerToken - 1) /
-                                        tokenizer::kFramesPerToken);
+  TokenCanvas canvas =
+      generator.canvas((result.mask.frames() + kFramesPerToken - 1) / kFramesPerToken);
   canvas.tokens.slice(0, 0, tokens.size(0)).copy_(tokens);
   canvas.known = unchanged_cells(result.mask, canvas.tokens.size(0), canvas.tokens.size(1));
   result.tokens = canvas.known.numel();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/time.h"
 #include "generator/ssta.h"
 #include "remomask/error.h"
 
@@ -11,7 +12,7 @@ namespace remomask::pipeline {
 
 namespace {
 
-constexpr int64_t kLeastTokens = 5;  // 1 s
+constexpr auto kMinTokens = static_cast<int64_t>(kMinMotionSeconds * kFps) / kFramesPerToken;
 constexpr double kSimilarityScale = 0.05, kTokenSeconds = 0.2;
 constexpr uint64_t kLengthStream = 0x6c656e67;
 
@@ -29,15 +30,8 @@ const char* length_rule_name(LengthRule rule) {
   return "";
 }
 
-LengthRule parse_length_rule(const std::string& name) {
-  for (const LengthRule rule : {LengthRule::evidence, LengthRule::likely, LengthRule::sample}) {
-    if (name == length_rule_name(rule)) return rule;
-  }
-  throw Error("there is no length rule \"" + name + "\"; use evidence, likely or sample");
-}
-
 std::vector<double> length_distribution(const std::vector<LengthNeighbour>& neighbours) {
-  std::vector<double> result(generator::kLongestTokenMap + 1, 0);
+  std::vector<double> result(kMaxTokenFrames + 1, 0);
   double best = -1;
   for (const auto& neighbour : neighbours) {
     if (neighbour.frames > 0) best = std::max(best, neighbour.similarity);
@@ -45,18 +39,18 @@ std::vector<double> length_distribution(const std::vector<LengthNeighbour>& neig
   for (const auto& neighbour : neighbours) {
     if (neighbour.frames <= 0) continue;
     const double weight = std::exp((neighbour.similarity - best) / kSimilarityScale);
-    const int64_t tokens =
-        std::clamp<int64_t>((neighbour.frames + 2) / 4, kLeastTokens, generator::kLongestTokenMap);
+    const int64_t tokens = std::clamp<int64_t>(
+        (neighbour.frames + kFramesPerToken / 2) / kFramesPerToken, kMinTokens, kMaxTokenFrames);
     for (int64_t offset = -2; offset <= 2; ++offset) {
       const int64_t length = tokens + offset;
-      if (length < kLeastTokens || length > generator::kLongestTokenMap) continue;
+      if (length < kMinTokens || length > kMaxTokenFrames) continue;
       result[static_cast<size_t>(length)] += weight * static_cast<double>(3 - std::abs(offset));
     }
   }
   double sum = 0;
   for (const double value : result) sum += value;
-  if (sum == 0) std::fill(result.begin() + kLeastTokens, result.end(), 1.0);
-  if (sum == 0) sum = static_cast<double>(generator::kLongestTokenMap + 1 - kLeastTokens);
+  if (sum == 0) std::fill(result.begin() + kMinTokens, result.end(), 1.0);
+  if (sum == 0) sum = static_cast<double>(kMaxTokenFrames + 1 - kMinTokens);
   for (double& value : result) value /= sum;
   return result;
 }

@@ -8,9 +8,7 @@
 
 namespace remomask::pipeline {
 
-/// Throws Error for another name than "evidence", "likely" and "sample".
-LengthRule parse_length_rule(const std::string& name);
-/// The name that parse_length_rule() reads.
+/// "evidence", "likely" or "sample".
 const char* length_rule_name(LengthRule rule);
 
 /// A clip near to a sentence.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/time.h"
 #include "pipeline/candidate_ranking.h"
 #include "pipeline/physical.h"
 #include "pipeline/script.h"
@@ -11,12 +12,10 @@ namespace remomask::pipeline {
 
 namespace {
 
-constexpr int kLongestClip = 200;  // frames; the retriever reads as much as a clip has
-
 double judge_segment(const Generator& generator, const std::string& sentence, const Motion& piece,
                      int seam) {
   const Skeleton& skeleton = humanml_skeleton();
-  const int last = std::min(piece.frames, seam + kLongestClip);
+  const int last = std::min(piece.frames, seam + kMaxStoredFrames);
   const Candidate score =
       score_candidate(generator.retriever(), generator.sentence_vector(sentence),
                       slice(piece, seam, last), skeleton);

@@ -2,6 +2,7 @@
 
 #include "motion/canonical.h"
 #include "motion/features.h"
+#include "nn/tensor_values.h"
 
 namespace remomask::pipeline {
 
@@ -9,9 +10,7 @@ std::vector<float> embed_motion(const retriever::Retriever& retriever, const Mot
   const Skeleton& skeleton = humanml_skeleton();
   const motion::Features features = motion::extract_features_all_frames(
       motion::canonicalize(motion, skeleton), skeleton, retriever.feature_mode());
-  const at::Tensor vector =
-      retriever.encode_motion({&features}).global[0].to(at::kCPU, at::kFloat).contiguous();
-  return {vector.data_ptr<float>(), vector.data_ptr<float>() + vector.numel()};
+  return nn::float_vector(retriever.encode_motion({&features}).global[0]);
 }
 
 }  // namespace remomask::pipeline

@@ -7,8 +7,10 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/time.h"
 #include "generator/token_windows.h"
 #include "motion/features.h"
+#include "nn/tensor_values.h"
 #include "nn/threads.h"
 #include "pipeline/draft.h"
 #include "pipeline/motion_finish.h"
@@ -27,16 +29,7 @@ constexpr double kDecodeSmoothing = 0.8;
 // Token frames beside known motion that follow nothing: the seam is the transformer's.
 constexpr int64_t kSeamFrames = 2;
 
-constexpr double kDefaultSeconds = 5, kLeastSeconds = 1, kMostEstimated = 9.8, kMostSeconds = 600;
-
-const nn::ModelStage& need_stage(const std::map<std::string, nn::ModelStage>& stages,
-                                 const std::string& kind) {
-  const auto found = stages.find(kind);
-  if (found == stages.end()) {
-    throw Error("the model has no stage \"" + kind + "\"; train it first or use a complete model");
-  }
-  return found->second;
-}
+constexpr double kDefaultSeconds = 5;
 
 void need_equal(int64_t a, int64_t b, const std::string& what) {
   if (a != b) {
@@ -81,10 +74,10 @@ struct Generator::Impl {
   Impl(std::shared_ptr<const retriever::Retriever> shared,
        const std::map<std::string, nn::ModelStage>& stages)
       : retriever(std::move(shared)),
-        tokenizer(need_stage(stages, "tokenizer")),
-        masked(generator::load_masked(need_stage(stages, "masked"))),
+        tokenizer(nn::require_stage(stages, "tokenizer", "the model")),
+        masked(generator::load_masked(nn::require_stage(stages, "masked", "the model"))),
         skeleton(skeleton_named(tokenizer.config().skeleton)) {
-    gate = stage_gate(need_stage(stages, "masked"));
+    gate = stage_gate(nn::require_stage(stages, "masked", "the model"));
     const tokenizer::TokenizerConfig& tokens = tokenizer.config();
     const generator::MaskedConfig& base = masked->config();
     need_equal(base.rows, tokens.rows, "the number of rows");
@@ -92,7 +85,7 @@ struct Generator::Impl {
     need_equal(base.embedding_width, retriever->embedding_width(), "the width of the shared space");
     need_equal(base.text_width, retriever->text_width(), "the width of the text states");
     if (tokens.levels == 1) return;
-    residual = generator::load_residual(need_stage(stages, "residual"));
+    residual = generator::load_residual(nn::require_stage(stages, "residual", "the model"));
     const generator::ResidualConfig& upper = residual->config();
     need_equal(upper.rows, tokens.rows, "the number of rows");
     need_equal(upper.codes, tokens.codes, "the number of codes");
@@ -117,8 +110,8 @@ struct Generator::Impl {
     for (int64_t i = 0; i < count; ++i) {
       const auto& poses = hits[static_cast<size_t>(i)].poses;
       at::Tensor map = torch::empty({0, tokenizer.config().rows}, torch::kLong);
-      if (poses && poses->frames >= 4) {
-        map = encode(*poses).select(2, 0).slice(0, 0, generator::kLongestTokenMap);
+      if (poses && poses->frames >= kFramesPerToken) {
+        map = encode(*poses).select(2, 0).slice(0, 0, kMaxTokenFrames);
       }
       longest = std::max(longest, map.size(0));
       maps.push_back(map);
@@ -168,8 +161,8 @@ struct Generator::Impl {
     for (const RetrievedMotion& found : hits) {
       candidates.push_back({found.similarity, found.poses ? found.poses->frames : 0});
     }
-    const auto chosen = choose_draft(
-        candidates, static_cast<int>(frames * tokenizer::kFramesPerToken), options.seed);
+    const auto chosen =
+        choose_draft(candidates, static_cast<int>(frames * kFramesPerToken), options.seed);
     if (!chosen) return std::nullopt;
     *hit = &hits[*chosen];
     const double share = options.follow * trust(**hit);
@@ -181,8 +174,8 @@ struct Generator::Impl {
   generator::KnownTokens make_draft(const RetrievedMotion& hit, const TokenCanvas& canvas,
                                     int64_t first, int64_t last, double share,
                                     uint64_t seed) const {
-    const at::Tensor codes = encode(
-        fit_length(*hit.poses, static_cast<int>((last - first) * tokenizer::kFramesPerToken)));
+    const at::Tensor codes =
+        encode(fit_length(*hit.poses, static_cast<int>((last - first) * kFramesPerToken)));
     const int64_t frames = std::min(codes.size(0), last - first);
     const std::vector<bool> followed = followed_frames(frames, share, seed);
     generator::KnownTokens draft{torch::zeros_like(canvas.tokens), torch::zeros_like(canvas.known)};
@@ -201,7 +194,9 @@ Generator::Generator(std::shared_ptr<const retriever::Retriever> retriever,
                      const std::map<std::string, nn::ModelStage>& stages)
     : impl_(std::make_unique<Impl>(std::move(retriever), stages)) {}
 Generator::Generator(const std::map<std::string, nn::ModelStage>& stages)
-    : Generator(std::make_shared<retriever::Retriever>(need_stage(stages, "retriever")), stages) {}
+    : Generator(std::make_shared<retriever::Retriever>(
+                    nn::require_stage(stages, "retriever", "the model")),
+                stages) {}
 Generator::~Generator() = default;
 Generator::Generator(Generator&&) noexcept = default;
 Generator& Generator::operator=(Generator&&) noexcept = default;
@@ -210,8 +205,7 @@ const retriever::Retriever& Generator::retriever() const { return *impl_->retrie
 double Generator::trust(const RetrievedMotion& hit) const { return impl_->trust(hit); }
 
 std::vector<float> Generator::sentence_vector(const std::string& sentence) const {
-  const at::Tensor query = impl_->retriever->encode_text({sentence}).query.contiguous();
-  return {query.data_ptr<float>(), query.data_ptr<float>() + query.numel()};
+  return nn::float_vector(impl_->retriever->encode_text({sentence}).query);
 }
 
 const tokenizer::Tokenizer& Generator::tokenizer() const { return impl_->tokenizer; }
@@ -233,9 +227,9 @@ const Skeleton& Generator::skeleton() const { return impl_->skeleton; }
 int motion_frames(const std::optional<double>& seconds, const std::vector<RetrievedMotion>& hits,
                   double fps) {
   if (seconds) {
-    if (!(*seconds >= kLeastSeconds && *seconds <= kMostSeconds)) {
-      throw Error(fmt::format("a motion lasts {:g} to {:g} seconds, not {:g}", kLeastSeconds,
-                              kMostSeconds, *seconds));
+    if (!(*seconds >= kMinMotionSeconds && *seconds <= kMaxMotionSeconds)) {
+      throw Error(fmt::format("a motion lasts {:g} to {:g} seconds, not {:g}", kMinMotionSeconds,
+                              kMaxMotionSeconds, *seconds));
     }
     return static_cast<int>(std::lround(*seconds * fps));
   }
@@ -249,7 +243,8 @@ int motion_frames(const std::optional<double>& seconds, const std::vector<Retrie
     std::nth_element(lengths.begin(), middle, lengths.end());
     length = *middle / fps;
   }
-  return static_cast<int>(std::lround(std::clamp(length, kLeastSeconds, kMostEstimated) * fps));
+  return static_cast<int>(
+      std::lround(std::clamp(length, kMinMotionSeconds, kMaxClipSeconds) * fps));
 }
 
 TokenCanvas Generator::canvas(int64_t frames) const {
@@ -326,7 +321,7 @@ Generated Generator::generate(const std::string& prompt, const std::vector<Retri
                               const GenerateOptions& options, const Monitor& monitor) const {
   Generated result;
   const int frames = motion_frames(options.seconds, read_hits(hits, options), impl_->skeleton.fps);
-  TokenCanvas map = canvas((frames + tokenizer::kFramesPerToken - 1) / tokenizer::kFramesPerToken);
+  TokenCanvas map = canvas((frames + kFramesPerToken - 1) / kFramesPerToken);
   const FillReport filled =
       fill(map, 0, map.tokens.size(0), prompt, hits, options, &result.times, monitor);
   result.hits_used = filled.hits_used;

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "base/random.h"
+#include "base/time.h"
 #include "generator/token_windows.h"
 #include "pipeline/motion_finish.h"
 #include "remomask/error.h"
@@ -17,7 +18,6 @@ namespace remomask {
 
 namespace {
 
-constexpr double kLeastScriptSeconds = 1, kMostScriptSeconds = 600;
 constexpr std::string_view kBlanks = " \t\r";
 
 std::string_view without_comment(std::string_view line) {
@@ -44,10 +44,10 @@ ScriptLine parse_line(std::string_view text, const std::string& path, long numbe
     result.sentence = text;
     return result;
   }
-  if (!(seconds >= kLeastScriptSeconds && seconds <= kMostScriptSeconds)) {
+  if (!(seconds >= kMinMotionSeconds && seconds <= kMaxMotionSeconds)) {
     throw FileError(path, number,
-                    fmt::format("a sentence lasts {:g} to {:g} seconds, not {}",
-                                kLeastScriptSeconds, kMostScriptSeconds, first));
+                    fmt::format("a sentence lasts {:g} to {:g} seconds, not {}", kMinMotionSeconds,
+                                kMaxMotionSeconds, first));
   }
   result.seconds = seconds;
   result.sentence = trimmed(text.substr(first.size()));
@@ -132,9 +132,8 @@ void fill_segment(const Generator& generator, TokenCanvas& canvas, int64_t begin
     double score = 0;
     if (options.candidates > 1) {
       Motion piece = generator.decode(candidate.tokens.slice(0, seen, end), generate.held_feet);
-      score = options.judge(
-          segment.sentence, piece,
-          static_cast<int>(begin - seen) * static_cast<int>(tokenizer::kFramesPerToken));
+      score = options.judge(segment.sentence, piece,
+                            static_cast<int>(begin - seen) * static_cast<int>(kFramesPerToken));
     }
     if (i > 0 && score <= made.score) continue;
     made.score = score;
@@ -156,7 +155,7 @@ ScriptMotion generate_script(const Generator& generator, const std::vector<Scrip
   ScriptMotion result;
   result.segments = lay_out(generator, segments, options.generate);
   const int frames = result.segments.back().last;
-  const int64_t all_tokens = (frames + tokenizer::kFramesPerToken - 1) / tokenizer::kFramesPerToken;
+  const int64_t all_tokens = (frames + kFramesPerToken - 1) / kFramesPerToken;
   TokenCanvas canvas = generator.canvas(all_tokens);
   int64_t begin = 0;
   for (size_t i = 0; i < segments.size(); ++i) {
@@ -164,9 +163,8 @@ ScriptMotion generate_script(const Generator& generator, const std::vector<Scrip
       throw Interrupted(fmt::format("stopped before sentence {} of {}", i + 1, segments.size()));
     }
     MadeSegment& made = result.segments[i];
-    const int64_t end = i + 1 == segments.size() ? all_tokens
-                                                 : (made.last + tokenizer::kFramesPerToken / 2) /
-                                                       tokenizer::kFramesPerToken;
+    const int64_t end =
+        i + 1 == segments.size() ? all_tokens : (made.last + kFramesPerToken / 2) / kFramesPerToken;
     fill_segment(generator, canvas, begin, end, segments[i], options, made, result.times, monitor);
     begin = end;
     monitor.report({"generate", static_cast<double>(i + 1), static_cast<double>(segments.size()),

@@ -66,37 +66,9 @@ void use_whole_body_encoder(RetrieverConfig& config) {
   config.hidden = config.hidden * 5 / 2;
 }
 
-void to_json(nlohmann::json& json, const RetrieverConfig& config) {
-  json = {{"preset", config.preset},
-          {"skeleton", config.skeleton},
-          {"mode", motion::feature_mode_name(config.mode)},
-          {"patch", config.patch},
-          {"width", config.width},
-          {"layers", config.layers},
-          {"heads", config.heads},
-          {"hidden", config.hidden},
-          {"dropout", config.dropout},
-          {"embedding", config.embedding},
-          {"part_embedding", config.part_embedding},
-          {"encoders", config.encoders},
-          {"text_tower", config.text_tower}};
-}
-
-void from_json(const nlohmann::json& json, RetrieverConfig& config) {
-  json.at("preset").get_to(config.preset);
-  json.at("skeleton").get_to(config.skeleton);
-  config.mode = motion::parse_feature_mode(json.at("mode").get<std::string>());
-  json.at("patch").get_to(config.patch);
-  json.at("width").get_to(config.width);
-  json.at("layers").get_to(config.layers);
-  json.at("heads").get_to(config.heads);
-  json.at("hidden").get_to(config.hidden);
-  json.at("dropout").get_to(config.dropout);
-  json.at("embedding").get_to(config.embedding);
-  json.at("part_embedding").get_to(config.part_embedding);
-  // Files of earlier versions do not say it.
-  config.encoders = json.value("encoders", config.encoders);
-  config.text_tower = json.at("text_tower");
+RetrieverConfig read_retriever_config(nlohmann::json json) {
+  json.emplace("encoders", RetrieverConfig().encoders);
+  return json.get<RetrieverConfig>();
 }
 
 }  // namespace remomask::retriever

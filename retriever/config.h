@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/preset.h"
+#include "motion/feature_mode_json.h"
 #include "motion/features.h"
 
 namespace remomask::retriever {
@@ -37,7 +38,11 @@ RetrieverConfig retriever_preset(ModelSize size);
 /// one state.
 void use_whole_body_encoder(RetrieverConfig& config);
 
-void to_json(nlohmann::json& json, const RetrieverConfig& config);
-void from_json(const nlohmann::json& json, RetrieverConfig& config);
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RetrieverConfig, preset, skeleton, mode, patch, width, layers,
+                                   heads, hidden, dropout, embedding, part_embedding, encoders,
+                                   text_tower)
+
+/// The configuration in a model file, also in one written before `encoders` existed.
+RetrieverConfig read_retriever_config(nlohmann::json json);
 
 }  // namespace remomask::retriever

@@ -18,7 +18,7 @@ Retriever::Retriever(const nn::ModelStage& stage) : impl_(std::make_unique<Impl>
     throw Error("a model stage '" + stage.kind + "' is no retriever; train one first");
   }
   try {
-    impl_->config = stage.config.get<RetrieverConfig>();
+    impl_->config = read_retriever_config(stage.config);
   } catch (const nlohmann::json::exception& error) {
     throw Error(std::string("the retriever is not described completely: ") + error.what());
   }

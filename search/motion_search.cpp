@@ -9,11 +9,13 @@
 #include <sstream>
 #include <unordered_map>
 
+#include "base/time.h"
 #include "db/captions_index.h"
 #include "db/clip_filter.h"
 #include "index/vector_index.h"
 #include "motion/features.h"
 #include "nn/model_file.h"
+#include "nn/tensor_values.h"
 #include "remomask/error.h"
 #include "retriever/retriever.h"
 #include "search/calibration.h"
@@ -27,15 +29,9 @@ namespace remomask::search {
 
 namespace {
 
-constexpr int kMinQueryFrames = 4;     // as clips that are embedded
-constexpr int kMaxQueryFrames = 200;   // of the longest clip
-constexpr int64_t kCaptionClips = 50;  // whose captions are compared one by one
-constexpr size_t kMomentHits = 50;     // whose windows are embedded
-
-std::vector<float> numbers(const at::Tensor& tensor) {
-  const at::Tensor flat = tensor.contiguous();
-  return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
-}
+constexpr int kMinQueryFrames = kFramesPerToken;  // as clips that are embedded
+constexpr int64_t kCaptionClips = 50;             // whose captions are compared one by one
+constexpr size_t kMomentHits = 50;                // whose windows are embedded
 
 float cosine(const std::vector<float>& left, const std::vector<float>& right) {
   return static_cast<float>(std::inner_product(left.begin(), left.end(), right.begin(), 0.0));
@@ -157,21 +153,21 @@ struct MotionSearch::Impl {
 
   /// [E] of one caption.
   std::vector<float> text_vector(const std::string& text) const {
-    return numbers(retriever->encode_text({text::normalise_prompt(text)}).query[0]);
+    return nn::float_vector(retriever->encode_text({text::normalise_prompt(text)}).query[0]);
   }
 
   db::ClipEmbedding motion_vectors(const Motion& motion) const {
     const double fps = humanml_skeleton().fps;
-    if (motion.frames < kMinQueryFrames || motion.frames > kMaxQueryFrames) {
+    if (motion.frames < kMinQueryFrames || motion.frames > kMaxStoredFrames) {
       throw Error(fmt::format(
           "the motion to compare with is {:.2f} s long; it must be {:.1f} to {:.0f} s: choose a "
           "piece of it (--from, --to)",
-          motion.frames / fps, kMinQueryFrames / fps, kMaxQueryFrames / fps));
+          motion.frames / fps, kMinQueryFrames / fps, kMaxStoredFrames / fps));
     }
     const motion::Features features =
         motion::extract_features_all_frames(motion, humanml_skeleton(), retriever->feature_mode());
     const retriever::MotionEncoding encoding = retriever->encode_motion({&features});
-    return {0, numbers(encoding.global[0]), numbers(encoding.parts[0]), {}};
+    return {0, nn::float_vector(encoding.global[0]), nn::float_vector(encoding.parts[0]), {}};
   }
 
   /// The motion of a hit; nothing when the clip was removed meanwhile.

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tokenizer/feature_layout.h"
+#include "motion/feature_layout.h"
 
 namespace remomask::tokenizer {
 
@@ -18,7 +18,7 @@ at::Tensor sum_before(const at::Tensor& x) {
 }  // namespace
 
 at::Tensor local_positions(const at::Tensor& features, const Skeleton& skeleton) {
-  const FeatureLayout layout(skeleton);
+  const motion::FeatureLayout layout(skeleton);
   const auto height = features.select(-1, layout.height);
   const auto zero = torch::zeros_like(height);
   const auto root = torch::stack({zero, height, zero}, -1).unsqueeze(2);
@@ -28,7 +28,7 @@ at::Tensor local_positions(const at::Tensor& features, const Skeleton& skeleton)
 }
 
 at::Tensor recover_positions(const at::Tensor& features, const Skeleton& skeleton) {
-  const FeatureLayout layout(skeleton);
+  const motion::FeatureLayout layout(skeleton);
   // The yaw column holds half angles; facing turns the world by +angle, so the way back is -angle.
   const auto angle = sum_before(features.select(-1, layout.yaw)) * 2;
   const auto cosine = angle.cos(), sine = angle.sin();

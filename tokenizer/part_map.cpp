@@ -4,12 +4,12 @@
 
 #include <vector>
 
-#include "tokenizer/feature_layout.h"
+#include "motion/feature_layout.h"
 
 namespace remomask::tokenizer {
 
 PartMap::PartMap(const Skeleton& skeleton) : dim_(skeleton.feature_dim()) {
-  const FeatureLayout layout(skeleton);
+  const motion::FeatureLayout layout(skeleton);
   std::vector<int64_t> columns(kSlots * kSlotChannels, dim_), cells(dim_, -1);
   const auto place = [&](int slot, int channel, int64_t first, int count) {
     for (int i = 0; i < count; ++i) {

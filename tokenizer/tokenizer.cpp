@@ -2,6 +2,7 @@
 
 #include <torch/types.h>
 
+#include "base/time.h"
 #include "remomask/error.h"
 #include "tokenizer/length_batches.h"
 #include "tokenizer/tokenizer_network.h"

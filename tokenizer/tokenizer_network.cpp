@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/time.h"
 #include "remomask/error.h"
 
 namespace remomask::tokenizer {

@@ -11,8 +11,6 @@
 
 namespace remomask::tokenizer {
 
-inline constexpr int64_t kFramesPerToken = 4;
-
 /// Throws Error when sizes contradict each other.
 void check_tokenizer_config(const TokenizerConfig& config);
 

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/time.h"
 #include "tools/core.h"
 
 #include "tools/output_path.h"
@@ -30,7 +31,7 @@ void register_edit(CLI::App& app, Program& program) {
   add_repeatable(*command, "--cells", options->cells,
                  "A-B[,C-D ...]:PART[,PART ...]: further spans with parts of their own");
   command->add_option("--extend", options->extend, "continue the motion by so many seconds")
-      ->check(number_between(0.0, 600.0));
+      ->check(number_between(0.0, kMaxMotionSeconds));
   command
       ->add_option("--fade", options->fade,
                    "frames inside of a span over which it leaves, and meets, what stays")

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "base/counted.h"
 #include "evaluation/evaluator_quality.h"
 #include "evaluation/side_rule.h"
 #include "evaluation/tokenizer_metrics.h"
@@ -16,8 +17,9 @@ namespace {
 
 void print_quality(const evaluation::EvaluatorQuality& quality) {
   for (const evaluation::EvaluatorSubset& subset : quality.subsets) {
-    fmt::print("{} ({} clips): nearest clip of another group has the content {:.1f} %\n",
-               subset.name, subset.captions.motions, 100 * subset.content.accuracy);
+    fmt::print("{} ({}): nearest clip of another group has the content {:.1f} %\n", subset.name,
+               counted(static_cast<int64_t>(subset.captions.motions), "clip"),
+               100 * subset.content.accuracy);
     for (const auto& [name, figures] :
          {std::pair<const char*, const evaluation::GenerationFigures&>{"distinct captions",
                                                                        subset.captions},

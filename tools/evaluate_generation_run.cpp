@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/time.h"
 #include "db/database.h"
 #include "evaluation/evaluator.h"
 #include "evaluation/generation_report.h"
@@ -16,8 +17,6 @@
 namespace remomask::tools {
 
 namespace {
-
-constexpr double kMaxEvaluatedSeconds = 9.8;  // what the transformers see at once
 
 std::string figure_text(const evaluation::Figure& figure) {
   return std::isnan(figure.mean) ? "-"
@@ -103,7 +102,8 @@ void run_evaluate_generation(const EvaluateGenerationCommand& options, Program& 
   const auto generate = [&](const evaluation::LabelPrompt& prompt) {
     GenerateOptions one = chosen;
     one.seed = prompt.seed;
-    if (prompt.frames > 0) one.seconds = std::min(prompt.frames / 20.0, kMaxEvaluatedSeconds);
+    if (prompt.frames > 0)
+      one.seconds = std::min(seconds_of(static_cast<size_t>(prompt.frames)), kMaxClipSeconds);
     // Evidence comes from training clips alone, never from the prompt's own motion.
     one.evidence.splits = {"train"};
     one.evidence.excluded_groups = {prompt.group};

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "evaluation/moment_metrics.h"
 #include "evaluation/retrieval_metrics.h"
 #include "nn/model_file.h"
@@ -43,11 +44,11 @@ void run_evaluate_moments(const EvaluateMomentsCommand& command, Program& progra
   program.finish_progress();
   if (program.json) return program.print_json(stamped(command.input, result, clips));
   fmt::print(
-      "split {} ({} clips, {}): {} motions of {} clips with different contents, joined; "
+      "split {} ({}, {}): {} motions of {} clips with different contents, joined; "
       "sentence: "
       "first caption of one of them\n",
-      command.input.split, clips.size(), evaluation::clip_set_hash(clips), result.tasks.tasks,
-      result.tasks.parts);
+      command.input.split, counted(static_cast<int64_t>(clips.size()), "clip"),
+      evaluation::clip_set_hash(clips), result.tasks.tasks, result.tasks.parts);
   if (result.bootstrap.resamples > 0) {
     fmt::print("in brackets: {:g} % intervals, bootstrap over motions, {} resamples, seed {}\n",
                100 * result.bootstrap.level, result.bootstrap.resamples, result.bootstrap.seed);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "evaluation/query_robustness.h"
 #include "nn/model_file.h"
 #include "retriever/retriever.h"
@@ -38,8 +39,8 @@ void run_evaluate_queries(const EvaluateQueriesCommand& command, Program& progra
       evaluation::measure_query_robustness(retriever, clips, bootstrap, program.monitor());
   program.finish_progress();
   if (program.json) return program.print_json(stamped(command.input, result, clips));
-  fmt::print("text-to-motion, split {} ({} clips, {}), full gallery; {}\n", command.input.split,
-             clips.size(), evaluation::clip_set_hash(clips),
+  fmt::print("text-to-motion, split {} ({}, {}), full gallery; {}\n", command.input.split,
+             counted(static_cast<int64_t>(clips.size()), "clip"), evaluation::clip_set_hash(clips),
              evaluation::retrieval_definition(evaluation::RetrievalProtocol::duplicates, {}));
   print_queries("form of all captions", result.forms);
   print_queries("paraphrases", result.paraphrases);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "evaluation/retrieval_metrics.h"
 #include "nn/model_file.h"
 #include "retriever/retriever.h"
@@ -39,10 +40,11 @@ void print_protocol(const evaluation::ProtocolEvaluation& protocol,
                     const evaluation::RetrievalEvaluation& evaluation, const std::string& split) {
   if (protocol.subsets.empty()) return;
   const bool intervals = evaluation.bootstrap.resamples > 0;
-  fmt::print("\nprotocol {}: {}\n  {} (gallery {}, {} clips, {})\n  captions: {}\n",
+  fmt::print("\nprotocol {}: {}\n  {} (gallery {}, {}, {})\n  captions: {}\n",
              evaluation::retrieval_protocol_name(protocol.protocol), protocol.definition, split,
-             protocol.subsets.front().text_to_motion.recall.gallery, evaluation.clips,
-             evaluation.split_hash, evaluation.captions);
+             protocol.subsets.front().text_to_motion.recall.gallery,
+             counted(static_cast<int64_t>(evaluation.clips), "clip"), evaluation.split_hash,
+             evaluation.captions);
   if (intervals) {
     fmt::print("  in brackets: {:g} % intervals, bootstrap over queries, {} resamples, seed {}\n",
                100 * evaluation.bootstrap.level, evaluation.bootstrap.resamples,

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "evaluation/reconstruction_fid.h"
 #include "evaluation/tokenizer_metrics.h"
 #include "nn/model_file.h"
@@ -37,8 +38,9 @@ void run_evaluate_tokenizer(const EvaluateTokenizerCommand& command, Program& pr
     document["evaluator"] = evaluator.hash();
   }
   if (program.json) return program.print_json(stamped(command.input, document, clips));
-  fmt::print("split {}: {} clips, {} frames; MPJPE: root of every frame subtracted\n",
-             command.input.split, metrics.clips, metrics.frames);
+  fmt::print("split {}: {}, {}; MPJPE: root of every frame subtracted\n", command.input.split,
+             counted(static_cast<int64_t>(metrics.clips), "clip"),
+             counted(static_cast<int64_t>(metrics.frames), "frame"));
   print_reconstruction("all levels", metrics.all_levels);
   print_reconstruction("base level", metrics.base_level);
   if (fid) {

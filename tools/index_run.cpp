@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "index/update_index.h"
 #include "nn/model_file.h"
 #include "retriever/embed_database.h"
@@ -55,10 +56,12 @@ void run_index(const IndexCommand& command, Program& program) {
       index::update_index(index_path(command.files), database, retriever.hash(), update, monitor);
   program.finish_progress();
   if (program.json) return program.print_json(update_json(command.files, embedded, made));
-  fmt::print("{}: {} clips, {} numbers each, {}\n", index_path(command.files), made.count,
-             made.width, describe_type(made.type));
-  fmt::print("{} clips embedded, {} added, {} dropped{}\n", embedded, made.difference.added,
-             made.difference.dropped, made.rebuilt.empty() ? "" : "; built anew: " + made.rebuilt);
+  fmt::print("{}: {}, {} numbers each, {}\n", index_path(command.files),
+             counted(static_cast<int64_t>(made.count), "clip"), made.width,
+             describe_type(made.type));
+  fmt::print("{} embedded, {} added, {} dropped{}\n", counted(embedded, "clip"),
+             made.difference.added, made.difference.dropped,
+             made.rebuilt.empty() ? "" : "; built anew: " + made.rebuilt);
 }
 
 }  // namespace remomask::tools

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "nn/model_file.h"
 #include "tools/core.h"
 #include "tools/program.h"
@@ -44,7 +45,8 @@ void print_stage(const std::string& kind, const nlohmann::json& stage) {
 void run_model_info(const std::string& path, Program& program) {
   const nlohmann::json document = describe_model(path);
   if (program.json) return program.print_json(document);
-  fmt::print("{}: a model of {} stages\n", path, document.at("stages").size());
+  fmt::print("{}: a model of {}\n", path,
+             counted(static_cast<int64_t>(document.at("stages").size()), "stage"));
   for (const auto& [kind, stage] : document.at("stages").items()) print_stage(kind, stage);
   fmt::print("--json prints every setting and how each stage was trained\n");
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "pipeline/motion_document.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
@@ -66,8 +67,9 @@ void print_answer(const SearchAnswer& answer) {
   if (answer.candidates == 0) {
     fmt::print("no clip passes the filters\n");
   } else if (answer.hits.empty() && answer.refused) {
-    fmt::print("nothing fits: the most similar of {} clips is {} with {}, below the limit\n",
-               answer.candidates, answer.refused->clip.name, score_text(*answer.refused));
+    fmt::print("nothing fits: the most similar of {} is {} with {}, below the limit\n",
+               counted(answer.candidates, "clip"), answer.refused->clip.name,
+               score_text(*answer.refused));
   }
   for (const MotionHit& hit : answer.hits) print_hit(hit);
 }
@@ -79,9 +81,8 @@ void search_clips(const SearchCommand& options, Program& program) {
     print_answer(answer);
     if (answer.unsearched > 0) {
       program.warn(
-          fmt::format("{} clips have no vectors yet and were not searched; run: remomask "
-                      "index {}",
-                      answer.unsearched, options.files.database_path()));
+          fmt::format("not searched, since vectors are missing: {}; run: remomask index {}",
+                      counted(answer.unsearched, "clip"), options.files.database_path()));
     }
     return;
   }

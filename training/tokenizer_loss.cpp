@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tokenizer/feature_layout.h"
+#include "motion/feature_layout.h"
 #include "tokenizer/motion_recovery.h"
 
 namespace remomask::training {
@@ -21,7 +21,7 @@ TokenizerLoss::TokenizerLoss(const Skeleton& skeleton, const at::Tensor& mean,
       mean_(mean.detach().clone()),
       deviation_(deviation.detach().clone()),
       options_(options) {
-  const tokenizer::FeatureLayout layout(skeleton);
+  const motion::FeatureLayout layout(skeleton);
   column_weights_ = torch::ones({layout.dim});
   column_weights_.slice(0, 0, layout.positions).fill_(options.root);
   column_weights_.slice(0, layout.rotations, layout.velocities).fill_(options.rotations);
@@ -43,13 +43,13 @@ at::Tensor TokenizerLoss::features_term(const at::Tensor& output, const at::Tens
 }
 
 at::Tensor TokenizerLoss::positions_term(const at::Tensor& output, const at::Tensor& target) const {
-  const tokenizer::FeatureLayout layout(skeleton_);
+  const motion::FeatureLayout layout(skeleton_);
   return smooth((output - target).slice(-1, layout.positions, layout.rotations)).mean();
 }
 
 at::Tensor TokenizerLoss::differences_term(const at::Tensor& output,
                                            const at::Tensor& target) const {
-  const tokenizer::FeatureLayout layout(skeleton_);
+  const motion::FeatureLayout layout(skeleton_);
   const auto error = frame_steps((output - target).slice(-1, layout.positions, layout.rotations));
   const auto deviation = deviation_.slice(0, layout.positions, layout.rotations);
   return smooth(error * (deviation / velocity_unit_)).mean();
@@ -81,9 +81,8 @@ at::Tensor TokenizerLoss::operator()(const at::Tensor& output, const at::Tensor&
   const auto target_features = target * deviation_ + mean_;
   const auto output_world = tokenizer::recover_positions(output_features, skeleton_);
   const auto target_world = tokenizer::recover_positions(target_features, skeleton_);
-  const auto contacts =
-      (target_features.slice(-1, tokenizer::FeatureLayout(skeleton_).contacts) > 0.5)
-          .to(torch::kFloat);
+  const auto contacts = (target_features.slice(-1, motion::FeatureLayout(skeleton_).contacts) > 0.5)
+                            .to(torch::kFloat);
   return features_term(output, target) + options_.positions * positions_term(output, target) +
          options_.differences * differences_term(output, target) +
          options_.global * global_term(output_world, target_world) +

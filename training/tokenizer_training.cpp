@@ -7,8 +7,8 @@
 
 #include "base/random.h"
 #include "evaluation/tokenizer_metrics.h"
+#include "motion/feature_layout.h"
 #include "remomask/error.h"
-#include "tokenizer/feature_layout.h"
 #include "tokenizer/tokenizer_network.h"
 #include "training/window_sampler.h"
 
@@ -77,7 +77,7 @@ nlohmann::json options_document(const TokenizerTrainingOptions& options) {
 
 FeatureStatistics feature_statistics(const std::vector<const motion::Features*>& clips,
                                      const Skeleton& skeleton) {
-  const tokenizer::FeatureLayout layout(skeleton);
+  const motion::FeatureLayout layout(skeleton);
   std::vector<double> sum(layout.dim, 0), square(layout.dim, 0);
   double rows = 0;
   for (const motion::Features* clip : clips) {

@@ -25,14 +25,13 @@ inline std::vector<db::TrainingClip> captioned_clips() {
   return clips;
 }
 
-/// All four networks of preset tiny after two steps each, made once.
+/// The four networks of a model, and the data that the transformers learnt from.
 struct TinyModel {
   std::map<std::string, nn::ModelStage> stages;
   training::GeneratorData data;
 
-  TinyModel() {
-    const auto clips = captioned_clips();
-    const training::ModelConfig config = training::model_preset(parse_preset("tiny"));
+  /// Each network after two steps.
+  TinyModel(const training::ModelConfig& config, const std::vector<db::TrainingClip>& clips) {
     const auto trainer = [](const std::string& name) {
       training::TrainerOptions options;
       options.steps = 2;
@@ -62,8 +61,9 @@ struct TinyModel {
   }
 };
 
+/// A model of preset tiny, made once.
 inline TinyModel& tiny_model() {
-  static TinyModel model;
+  static TinyModel model(training::model_preset(parse_preset("tiny")), captioned_clips());
   return model;
 }
 

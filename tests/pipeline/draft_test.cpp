@@ -81,7 +81,7 @@ TEST(Draft, FollowedFramesAreSpreadEvenly) {
 }
 
 std::vector<pipeline::RetrievedMotion> posed_hit(const pipeline::Generator& generator) {
-  std::vector<pipeline::RetrievedMotion> hits = two_hits(generator);
+  std::vector<pipeline::RetrievedMotion> hits = two_hits();
   hits.resize(1);
   hits[0].poses = motion::recover_motion(swinging_clips({40})[0].features, humanml_skeleton());
   return hits;

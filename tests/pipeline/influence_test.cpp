@@ -12,7 +12,7 @@ namespace {
 
 TEST(HitInfluence, TheHitThatIsFollowedDecides) {
   const pipeline::Generator generator(tiny_model().stages);
-  auto hits = two_hits(generator);
+  auto hits = two_hits();
   hits[0].poses = motion::recover_motion(swinging_clips({40})[0].features, humanml_skeleton());
   GenerateOptions options;
   options.seconds = 2;

@@ -51,8 +51,7 @@ TEST(Pipeline, MakesAMotionOfTheWantedLength) {
   GenerateOptions options;
   options.seconds = 3;
   options.seed = 4;
-  const pipeline::Generated made =
-      generator.generate("a person walks", two_hits(generator), options);
+  const pipeline::Generated made = generator.generate("a person walks", two_hits(), options);
   EXPECT_EQ(made.motion.frames, 60);
   EXPECT_EQ(made.motion.joints, 22);
   EXPECT_EQ(made.tokens.sizes(), (std::vector<int64_t>{15, 6, 3}));
@@ -70,7 +69,7 @@ TEST(Pipeline, MakesAMotionOfTheWantedLength) {
 
 TEST(Pipeline, SameInputsSameMotionForAnyThreads) {
   const pipeline::Generator generator(tiny_model().stages);
-  const auto hits = two_hits(generator);
+  const auto hits = two_hits();
   GenerateOptions options;
   options.seed = 9;
   nn::set_compute_threads(1);
@@ -87,7 +86,7 @@ TEST(Pipeline, WithoutRetrievalHitsAreNotRead) {
   const pipeline::Generator generator(tiny_model().stages);
   GenerateOptions options;
   options.use_retrieval = false;
-  const pipeline::Generated with = generator.generate("a man waves", two_hits(generator), options);
+  const pipeline::Generated with = generator.generate("a man waves", two_hits(), options);
   const pipeline::Generated without = generator.generate("a man waves", {}, options);
   EXPECT_EQ(with.hits_used, 0);
   EXPECT_EQ(with.motion.frames, 100);
@@ -127,7 +126,7 @@ TEST(Pipeline, MakesEveryLengthExactly) {
 TEST(Pipeline, WrongInputsAreErrors) {
   auto stages = tiny_model().stages;
   const pipeline::Generator generator(stages);
-  auto hits = two_hits(generator);
+  auto hits = two_hits();
   hits[1].motion.pop_back();
   EXPECT_THROW(generator.generate("a man waves", hits), Error);
   stages.erase("residual");

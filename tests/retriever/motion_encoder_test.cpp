@@ -153,7 +153,7 @@ TEST(MotionEncoder, OneEncoderHasAboutAsManyWeightsAsSix) {
   }
   nlohmann::json old_file = retriever::retriever_preset(ModelSize::base);
   old_file.erase("encoders");
-  EXPECT_EQ(old_file.get<retriever::RetrieverConfig>().encoders, 6);
+  EXPECT_EQ(retriever::read_retriever_config(old_file).encoders, 6);
 }
 
 TEST(MotionEncoder, KitHasItsOwnParts) {

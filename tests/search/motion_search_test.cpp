@@ -15,6 +15,7 @@
 #include "motion/body_parts.h"
 #include "motion/features.h"
 #include "nn/model_file.h"
+#include "nn/tensor_values.h"
 #include "retriever/retriever.h"
 #include "search/calibration.h"
 #include "search/moments.h"
@@ -26,11 +27,6 @@ namespace {
 
 const std::string kModels = REMOMASK_SOURCE_DIR "/models/";
 const std::string kModel = kModels + "base.safetensors";
-
-std::vector<float> floats_of(const at::Tensor& tensor) {
-  const at::Tensor flat = tensor.contiguous();
-  return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
-}
 
 double dot(std::span<const float> left, std::span<const float> right) {
   return std::inner_product(left.begin(), left.end(), right.begin(), 0.0);
@@ -89,7 +85,7 @@ class MotionSearchTest : public ::testing::Test {
     return *database_->embedding(retriever_->hash(), *database_->find_name(name));
   }
   static std::vector<float> encode(const std::string& text) {
-    return floats_of(retriever_->encode_text({text}).query[0]);
+    return nn::float_vector(retriever_->encode_text({text}).query[0]);
   }
 
   using Similarity = std::function<double(const db::ClipEmbedding&)>;

@@ -5,11 +5,8 @@
 
 #include "pipeline/motion_generator.h"
 #include "remomask/error.h"
-#include "tests/tokenizer/tokenizer_test_tools.h"
+#include "tests/generator/tiny_model.h"
 #include "tokenizer/tokenizer_network.h"
-#include "training/retriever_training.h"
-#include "training/tokenizer_training.h"
-#include "training/transformer_training.h"
 
 namespace remomask {
 namespace {
@@ -77,12 +74,6 @@ TEST(PresetsTest, PaperTransformersHaveThePublishedShape) {
 
 // The road of the baseline, from motions to a generated motion, with its sizes cut.
 TEST(PresetsTest, OneRowWithoutRetrievalWorksFromEndToEnd) {
-  std::vector<db::TrainingClip> clips = swinging_clips({40, 48, 60, 44});
-  for (size_t i = 0; i < clips.size(); ++i) {
-    clips[i].split = "train";
-    clips[i].group = static_cast<int>(i);
-    clips[i].captions = {i % 2 == 0 ? "a person walks" : "a person waves"};
-  }
   training::ModelConfig model = training::model_preset(parse_preset("momask"));
   model.retriever = retriever::retriever_preset(ModelSize::tiny);
   model.tokenizer.widths = {16, 16, 16};
@@ -91,34 +82,7 @@ TEST(PresetsTest, OneRowWithoutRetrievalWorksFromEndToEnd) {
   model.masked.width = model.residual.width = 32;
   model.masked.heads = model.residual.heads = 2;
   model.masked.layers = model.residual.layers = 1;
-  const auto trainer = [](const std::string& name) {
-    training::TrainerOptions options;
-    options.steps = 2;
-    options.stage_name = name;
-    return options;
-  };
-  std::map<std::string, nn::ModelStage> stages;
-  training::RetrieverTrainingOptions retriever_options(ModelSize::tiny);
-  retriever_options.trainer = trainer("retriever");
-  retriever_options.batch = 4;
-  stages["retriever"] =
-      training::train_retriever(clips, {}, std::nullopt, model.retriever, retriever_options, {});
-  training::TokenizerTrainingOptions tokenizer_options;
-  tokenizer_options.trainer = trainer("tokenizer");
-  tokenizer_options.window = 32;
-  tokenizer_options.batch_frames = 128;
-  stages["tokenizer"] =
-      training::train_tokenizer(clips, clips, model.tokenizer, tokenizer_options, {});
-  const tokenizer::Tokenizer tokenizer(stages["tokenizer"]);
-  const training::GeneratorData data = training::prepare_generator_data(
-      clips, {clips[0]}, tokenizer, retriever::Retriever(stages["retriever"]), {});
-  training::TransformerTrainingOptions options;
-  options.batch = 2;
-  options.trainer = trainer("masked");
-  stages["masked"] = training::train_masked(model.masked, data, options, {});
-  options.trainer = trainer("residual");
-  stages["residual"] = training::train_residual(model.residual, data, options, {});
-  const pipeline::Generator generator(stages);
+  const pipeline::Generator generator(TinyModel(model, captioned_clips()).stages);
   GenerateOptions generate;
   generate.seconds = 2.0;
   const pipeline::Generated made = generator.generate("a person walks", {}, generate);

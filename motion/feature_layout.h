@@ -4,7 +4,7 @@
 
 #include "remomask/skeleton.h"
 
-namespace remomask::tokenizer {
+namespace remomask::motion {
 
 /// First columns of the groups of a feature row (12 J - 1 columns, see
 /// motion/features.h) for J joints.
@@ -21,4 +21,4 @@ struct FeatureLayout {
         contacts(velocities + 3 * joints) {}
 };
 
-}  // namespace remomask::tokenizer
+}  // namespace remomask::motion
