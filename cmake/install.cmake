@@ -39,7 +39,7 @@ if(TARGET remomask-core)
 endif()
 install(FILES
     models/base.safetensors models/evaluator.safetensors models/procedural.sqlite
-    models/procedural.sqlite.index models/README.md formats/skeleton_maps.json
+    models/procedural.sqlite.index models/README.md rig/skeleton_maps.json
   DESTINATION ${data})
 
 # Pages and completion, from the help texts of the program that was just built.

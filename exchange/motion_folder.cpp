@@ -8,9 +8,9 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "formats/npy.h"
-#include "formats/skeleton_map.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
+#include "rig/skeleton_map.h"
 
 namespace remomask::exchange {
 
@@ -77,9 +77,9 @@ class ReadingLabels {
 };
 
 bool is_shipped_map(const std::string& name) {
-  const auto& maps = formats::shipped_skeleton_maps();
+  const auto& maps = rig::shipped_skeleton_maps();
   return std::any_of(maps.begin(), maps.end(),
-                     [&](const formats::SkeletonMap& map) { return map.name == name; });
+                     [&](const rig::SkeletonMap& map) { return map.name == name; });
 }
 
 /// The name of a map in the labels is a hint: a map that we do not have, or that

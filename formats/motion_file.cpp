@@ -4,17 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "base/file.h"
 #include "formats/axis_detection.h"
 #include "formats/bvh.h"
+#include "formats/mapped_kinematics.h"
 #include "formats/motion_writing.h"
 #include "formats/npy.h"
-#include "formats/skeleton_map.h"
 #include "motion/canonical.h"
 #include "motion/features.h"
 #include "remomask/error.h"
+#include "rig/skeleton_choice.h"
 
 namespace remomask::formats {
 
@@ -32,20 +32,6 @@ void check_options(const MotionFileOptions& options) {
     throw Error(std::string("the up axis must be X, Y or Z, not \"") + *options.up_axis + "\"");
   }
   if (options.skip_frames < 0) throw Error("the number of frames to skip cannot be negative");
-}
-
-SkeletonMap choose_map(const Bvh& bvh, const std::string& wanted, const std::string& path) {
-  if (wanted.empty()) return find_skeleton_map(shipped_skeleton_maps(), bvh, path);
-  for (const SkeletonMap& map : shipped_skeleton_maps()) {
-    if (map.name == wanted) return find_skeleton_map({map}, bvh, path);
-  }
-  if (!std::filesystem::exists(wanted)) {
-    std::vector<std::string> names;
-    for (const SkeletonMap& map : shipped_skeleton_maps()) names.push_back(map.name);
-    throw Error(fmt::format("there is no skeleton map \"{}\"; name a file or one of {}", wanted,
-                            fmt::join(names, ", ")));
-  }
-  return find_skeleton_map(parse_skeleton_maps(read_file(wanted), wanted), bvh, path);
 }
 
 Motion skip_first(const Motion& motion, int skip) {
@@ -74,13 +60,15 @@ void bring_to_metres(Motion raw, const Motion* rest_pose, const MotionFileOption
 
 LoadedMotion load_bvh_motion(const std::string& path, const MotionFileOptions& options) {
   const Bvh bvh = read_bvh(path);
-  const SkeletonMap map = choose_map(bvh, options.skeleton_map, path);
-  MappedKinematics kinematics(bvh, map);
+  const rig::ChosenSkeletonMap chosen =
+      rig::choose_skeleton_map(view_of(bvh), options.skeleton_map, path);
+  MappedKinematics kinematics(bvh, chosen.map);
   Motion raw(bvh.frames, kJoints), rest(1, kJoints);
   for (int t = 0; t < bvh.frames; ++t) kinematics.positions(t, raw.at(t, 0));
   kinematics.rest_positions(rest.at(0, 0));
   LoadedMotion loaded;
-  loaded.skeleton_map = map.name;
+  loaded.skeleton_map = chosen.map.name;
+  loaded.warnings = chosen.warnings;
   loaded.source_fps = 1 / bvh.frame_time;
   bring_to_metres(std::move(raw), &rest, options, loaded);
   return loaded;

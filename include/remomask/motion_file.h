@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "remomask/export.h"
 #include "remomask/generation.h"
@@ -27,6 +28,7 @@ struct LoadedMotion {
   int source_frames = 0;
   double metres_per_unit = 0;
   char up_axis = 'Y';
+  std::vector<std::string> warnings;  ///< what was repaired or assumed, one sentence each
 };
 
 /// Reads .bvh or .npy (T x 22 x 3 joints, or T x 263 features). Throws FileError with the line

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "formats/skeleton_map.h"
+#include "formats/mapped_kinematics.h"
 #include "remomask/error.h"
 #include "tests/motion/support.h"
 
@@ -21,8 +21,8 @@ namespace {
 Motion through_bvh_text(const Motion& motion) {
   const formats::Bvh bvh =
       formats::parse_bvh(formats::format_bvh(formats::motion_to_bvh(motion)), "own.bvh");
-  const formats::SkeletonMap& map =
-      formats::find_skeleton_map(formats::shipped_skeleton_maps(), bvh, "own.bvh");
+  const rig::SkeletonMap& map =
+      *rig::fitting_skeleton_map(rig::shipped_skeleton_maps(), formats::view_of(bvh));
   EXPECT_EQ(map.name, "remomask");
   formats::MappedKinematics kinematics(bvh, map);
   Motion result(bvh.frames, 22);

@@ -1,0 +1,57 @@
+#include "rig/skeleton_choice.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "base/file.h"
+#include "remomask/error.h"
+
+namespace remomask::rig {
+
+namespace {
+
+const SkeletonMap* shipped_map_named(const std::string& name) {
+  for (const SkeletonMap& map : shipped_skeleton_maps()) {
+    if (map.name == name) return &map;
+  }
+  return nullptr;
+}
+
+std::string names_of_shipped_maps() {
+  std::vector<std::string> names;
+  for (const SkeletonMap& map : shipped_skeleton_maps()) names.push_back(map.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+ChosenSkeletonMap choose_skeleton_map(const SkeletonView& skeleton, const std::string& wanted,
+                                      const std::string& path) {
+  std::vector<std::string> warnings;
+  if (!wanted.empty()) {
+    if (const SkeletonMap* map = shipped_map_named(wanted)) {
+      const std::vector<std::string> missing = missing_joints(*map, skeleton);
+      if (missing.empty()) return {*map, {}};
+      throw FileError(path, 0,
+                      fmt::format("does not fit the skeleton map \"{}\": it misses {}; leave the "
+                                  "map out to have one found",
+                                  wanted, fmt::join(missing, ", ")));
+    }
+    if (!std::filesystem::exists(wanted)) {
+      throw Error(fmt::format("there is no skeleton map \"{}\"; name a file or one of {}", wanted,
+                              names_of_shipped_maps()));
+    }
+    const std::vector<SkeletonMap> maps = parse_skeleton_maps(read_file(wanted), wanted);
+    if (const SkeletonMap* map = fitting_skeleton_map(maps, skeleton)) return {*map, {}};
+    warnings.push_back(fmt::format("no map of {} fits this skeleton: \"{}\" misses {}", wanted,
+                                   maps[0].name,
+                                   fmt::join(missing_joints(maps[0], skeleton), ", ")));
+  }
+  if (const SkeletonMap* map = fitting_skeleton_map(shipped_skeleton_maps(), skeleton)) {
+    return {*map, std::move(warnings)};
+  }
+  throw FileError(path, 0, "no known skeleton has these joint names");
+}
+
+}  // namespace remomask::rig
