@@ -11,6 +11,7 @@
 #include "formats/bvh.h"
 #include "formats/motion_writing.h"
 #include "formats/npy.h"
+#include "formats/own_skeleton.h"
 #include "formats/skeleton_map.h"
 #include "motion/canonical.h"
 #include "motion/features.h"
@@ -35,7 +36,10 @@ void check_options(const MotionFileOptions& options) {
 }
 
 SkeletonMap choose_map(const Bvh& bvh, const std::string& wanted, const std::string& path) {
-  if (wanted.empty()) return find_skeleton_map(shipped_skeleton_maps(), bvh, path);
+  if (wanted.empty()) {
+    const std::optional<SkeletonMap> own = own_skeleton_map(bvh);
+    return own ? *own : find_skeleton_map(shipped_skeleton_maps(), bvh, path);
+  }
   for (const SkeletonMap& map : shipped_skeleton_maps()) {
     if (map.name == wanted) return find_skeleton_map({map}, bvh, path);
   }
@@ -69,7 +73,10 @@ void bring_to_metres(Motion raw, const Motion* rest_pose, const MotionFileOption
     value = static_cast<float>(value * loaded.metres_per_unit);
   }
   turn_up_axis(motion, loaded.up_axis);
-  loaded.motion = options.canonical ? motion::canonicalize(motion, skeleton) : std::move(motion);
+  motion::CanonicalOptions canonical;
+  canonical.uniform_skeleton = !options.own_proportions;
+  loaded.motion =
+      options.canonical ? motion::canonicalize(motion, skeleton, canonical) : std::move(motion);
 }
 
 LoadedMotion load_bvh_motion(const std::string& path, const MotionFileOptions& options) {
@@ -134,8 +141,9 @@ LoadedMotion load_motion(const std::string& path, const MotionFileOptions& optio
   throw FileError(path, 0, "is not of a known file type; motions are read from .bvh and .npy");
 }
 
-void save_motion(const std::string& path, const Motion& motion) {
-  formats::write_motion(path, motion, nullptr);
+WrittenMotion save_motion(const std::string& path, const Motion& motion,
+                          const MotionWriteOptions& options) {
+  return formats::write_motion(path, motion, nullptr, options);
 }
 
 }  // namespace remomask
