@@ -55,7 +55,10 @@ void bring_to_metres(Motion raw, const Motion* rest_pose, const MotionFileOption
     value = static_cast<float>(value * loaded.metres_per_unit);
   }
   turn_up_axis(motion, loaded.up_axis);
-  loaded.motion = options.canonical ? motion::canonicalize(motion, skeleton) : std::move(motion);
+  motion::CanonicalOptions canonical;
+  canonical.uniform_skeleton = !options.own_proportions;
+  loaded.motion =
+      options.canonical ? motion::canonicalize(motion, skeleton, canonical) : std::move(motion);
 }
 
 LoadedMotion load_bvh_motion(const std::string& path, const MotionFileOptions& options) {
@@ -122,8 +125,9 @@ LoadedMotion load_motion(const std::string& path, const MotionFileOptions& optio
   throw FileError(path, 0, "is not of a known file type; motions are read from .bvh and .npy");
 }
 
-void save_motion(const std::string& path, const Motion& motion) {
-  formats::write_motion(path, motion, nullptr);
+WrittenMotion save_motion(const std::string& path, const Motion& motion,
+                          const MotionWriteOptions& options) {
+  return formats::write_motion(path, motion, nullptr, options);
 }
 
 }  // namespace remomask

@@ -6,27 +6,86 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
-#include "formats/bvh.h"
-#include "formats/inverse_kinematics.h"
+#include "formats/bvh_motion.h"
 #include "formats/npy.h"
+#include "motion/canonical.h"
 #include "remomask/error.h"
+#include "rig/written_rotations.h"
 
 namespace remomask::formats {
 
 namespace {
 
 constexpr int kWrittenJoints = 22;
+constexpr double kCentimetresPerMetre = 100;
 
-std::string motion_bytes(const std::string& path, const Motion& motion) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".bvh") return format_bvh(motion_to_bvh(motion));
-  if (extension == ".npy") {
-    return format_npy({{static_cast<size_t>(motion.frames), kWrittenJoints, 3}, motion.positions});
-  }
-  throw FileError(path, 0, "is not of a known file type; motions are written as .bvh or .npy");
+WrittenFile write_bvh(const WritingJob& job) {
+  const rig::RotationsToWrite ready = rig::rotations_to_write(job.motion, job.options);
+  const bool metres = job.options.units == LengthUnit::metres;
+  return {format_bvh(rotations_to_bvh(ready.motion, metres ? 1 : kCentimetresPerMetre)),
+          ready.written};
+}
+
+WrittenFile write_npy(const WritingJob& job) {
+  const double fps = job.options.fps.value_or(job.motion.fps);
+  const Motion motion = motion::resample(job.motion, job.motion.fps, fps);
+  WrittenMotion written;
+  written.frames = motion.frames;
+  written.fps = fps;
+  return {format_npy({{static_cast<size_t>(motion.frames), kWrittenJoints, 3}, motion.positions}),
+          written};
 }
 
 }  // namespace
+
+const std::vector<MotionFormat>& written_formats() {
+  static const std::vector<MotionFormat> formats = {{.extension = ".bvh", .write = write_bvh},
+                                                    {.extension = ".npy",
+                                                     .rotations = false,
+                                                     .names = false,
+                                                     .units = false,
+                                                     .write = write_npy}};
+  return formats;
+}
+
+std::string written_extensions() {
+  const std::vector<MotionFormat>& formats = written_formats();
+  std::string text;
+  for (size_t i = 0; i < formats.size(); ++i) {
+    if (i > 0) text += i + 1 < formats.size() ? ", " : " or ";
+    text += formats[i].extension;
+  }
+  return text;
+}
+
+const MotionFormat& written_format(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  for (const MotionFormat& format : written_formats()) {
+    if (format.extension == extension) return format;
+  }
+  throw FileError(path, 0,
+                  "is not of a known file type; motions are written as " + written_extensions());
+}
+
+void check_write_options(const MotionFormat& format, const MotionWriteOptions& options) {
+  const auto refuse = [&](bool chosen, bool used, const char* what) {
+    if (!chosen || used) return;
+    throw Error(
+        fmt::format("{} has no meaning for {} files; leave it out, or write a file of "
+                    "another kind",
+                    what, format.extension));
+  };
+  refuse(options.names.has_value(), format.names, "--names (joint names)");
+  refuse(options.units.has_value(), format.units, "--units (unit of length)");
+  refuse(options.in_place, format.rotations, "--in-place");
+  refuse(options.loop, format.rotations, "--loop");
+  refuse(options.root_motion, format.rotations, "--root-motion");
+  refuse(options.own_proportions, format.rotations, "--own-proportions");
+  if (options.fps && !(*options.fps >= 1 && *options.fps <= 240)) {
+    throw Error(
+        fmt::format("a motion is written at 1 to 240 frames a second, not at {:g}", *options.fps));
+  }
+}
 
 std::string lower_extension(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
@@ -34,20 +93,26 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
-void write_motion(const std::string& path, const Motion& motion, const nlohmann::json* sidecar) {
+WrittenMotion write_motion(const std::string& path, const Motion& motion,
+                           const nlohmann::json* sidecar, const MotionWriteOptions& options) {
   if (motion.joints != kWrittenJoints) {
     throw Error(
         fmt::format("only motions of 22 joints can be written, this one has {}", motion.joints));
   }
-  const std::string bytes = motion_bytes(path, motion);
+  const MotionFormat& format = written_format(path);
+  check_write_options(format, options);
+  const WrittenFile file = format.write({motion, options, sidecar});
   const std::string sidecar_path = path + ".json";
   std::error_code ignored;
   std::filesystem::remove(sidecar_path, ignored);
-  write_file_atomically(path, bytes);
-  if (!sidecar) return;
-  // Text from files may hold bytes that are not UTF-8: shown, not fatal.
-  write_file_atomically(
-      sidecar_path, sidecar->dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_file_atomically(path, file.bytes);
+  if (sidecar) {
+    // Text from files may hold bytes that are not UTF-8: shown, not fatal.
+    write_file_atomically(
+        sidecar_path,
+        sidecar->dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  }
+  return file.written;
 }
 
 }  // namespace remomask::formats

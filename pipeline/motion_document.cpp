@@ -158,21 +158,25 @@ namespace remomask {
 namespace {
 
 template <class Made>
-void save_with_sidecar(const std::string& path, const Made& made) {
+WrittenMotion save_with_sidecar(const std::string& path, const Made& made,
+                                const MotionWriteOptions& options) {
   const nlohmann::json sidecar = pipeline::motion_document(made);
-  formats::write_motion(path, made.motion, &sidecar);
+  return formats::write_motion(path, made.motion, &sidecar, options);
 }
 
 }  // namespace
 
-void save_motion(const std::string& path, const GeneratedMotion& made) {
-  save_with_sidecar(path, made);
+WrittenMotion save_motion(const std::string& path, const GeneratedMotion& made,
+                          const MotionWriteOptions& options) {
+  return save_with_sidecar(path, made, options);
 }
-void save_motion(const std::string& path, const EditedMotion& made) {
-  save_with_sidecar(path, made);
+WrittenMotion save_motion(const std::string& path, const EditedMotion& made,
+                          const MotionWriteOptions& options) {
+  return save_with_sidecar(path, made, options);
 }
-void save_motion(const std::string& path, const ScriptedMotion& made) {
-  save_with_sidecar(path, made);
+WrittenMotion save_motion(const std::string& path, const ScriptedMotion& made,
+                          const MotionWriteOptions& options) {
+  return save_with_sidecar(path, made, options);
 }
 
 }  // namespace remomask

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "remomask/error.h"
+#include "rig/own_skeleton.h"
 
 namespace remomask::rig {
 
@@ -48,6 +49,7 @@ ChosenSkeletonMap choose_skeleton_map(const SkeletonView& skeleton, const std::s
                                    maps[0].name,
                                    fmt::join(missing_joints(maps[0], skeleton), ", ")));
   }
+  if (auto own = own_skeleton_map(skeleton)) return {std::move(*own), std::move(warnings)};
   if (const SkeletonMap* map = fitting_skeleton_map(shipped_skeleton_maps(), skeleton)) {
     return {*map, std::move(warnings)};
   }

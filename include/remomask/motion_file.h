@@ -17,6 +17,8 @@ struct MotionFileOptions {
   /// false: place, heading, floor and size of the body stay as in the file; only unit, up axis
   /// and frame rate change. What is in metres, Y up and at 20 fps is then read as it is.
   bool canonical = true;
+  /// Canonical motions have the bone lengths of HumanML3D; true: they keep those of the performer.
+  bool own_proportions = false;
   /// Name of a shipped skeleton map or path of a map file; empty: found by joint names.
   std::string skeleton_map;
 };
@@ -36,14 +38,52 @@ struct LoadedMotion {
 REMOMASK_API LoadedMotion load_motion(const std::string& path,
                                       const MotionFileOptions& options = {});
 
-/// Writes .bvh (joint rotations over a T-pose, centimetres) or .npy (float32 T x 22 x 3, metres),
-/// chosen by extension. The file is replaced atomically, and an old sidecar is removed.
-REMOMASK_API void save_motion(const std::string& path, const Motion& motion);
+/// Whose names the joints of a written file have. All but smpl are names without a prefix:
+/// "Hips", not "mixamorig:Hips".
+enum class JointNames { mixamo, unreal, unity, vrm, godot, smpl };
+
+enum class LengthUnit { centimetres, metres };
+
+/// How a motion is written. A choice that a format has no use for is an Error.
+struct MotionWriteOptions {
+  std::optional<JointNames> names;  ///< unset: those of the format, else mixamo
+  /// 1 to 240; unset: the motion's own. Rotations are interpolated on the sphere, and feet that
+  /// stand go on standing.
+  std::optional<double> fps;
+  std::optional<LengthUnit> units;  ///< unset: those of the format; centimetres in .bvh
+  bool in_place = false;            ///< the body stays above the origin; heights are kept
+  /// The last frame becomes the first one: what differs is spread over the end of the motion.
+  bool loop = false;
+  bool root_motion = false;      ///< the heading lies on the joint "Root", too, not on the hips
+  bool own_proportions = false;  ///< as in RotationOptions
+};
+
+/// What was closed by MotionWriteOptions::loop.
+struct LoopGap {
+  double degrees = 0;    ///< largest difference of a joint's rotation
+  double metres = 0;     ///< difference of the height, and of the place if that was closed, too
+  bool travels = false;  ///< the motion ends elsewhere: place and heading go on from cycle to cycle
+  double seconds = 0;    ///< of the stretch that the difference was spread over
+};
+
+struct WrittenMotion {
+  int frames = 0;
+  double fps = 0;
+  std::optional<LoopGap> loop;
+};
+
+/// Writes .bvh (joint rotations over a T-pose) or .npy (float32 T x 22 x 3, metres), chosen by
+/// extension. The file is replaced atomically, and an old sidecar is removed.
+REMOMASK_API WrittenMotion save_motion(const std::string& path, const Motion& motion,
+                                       const MotionWriteOptions& options = {});
 
 /// The same, and beside it PATH.json with the sentence, seed, evidence and settings that the
 /// motion was made with (docs/schema/motion.json).
-REMOMASK_API void save_motion(const std::string& path, const GeneratedMotion& made);
-REMOMASK_API void save_motion(const std::string& path, const EditedMotion& made);
-REMOMASK_API void save_motion(const std::string& path, const ScriptedMotion& made);
+REMOMASK_API WrittenMotion save_motion(const std::string& path, const GeneratedMotion& made,
+                                       const MotionWriteOptions& options = {});
+REMOMASK_API WrittenMotion save_motion(const std::string& path, const EditedMotion& made,
+                                       const MotionWriteOptions& options = {});
+REMOMASK_API WrittenMotion save_motion(const std::string& path, const ScriptedMotion& made,
+                                       const MotionWriteOptions& options = {});
 
 }  // namespace remomask
