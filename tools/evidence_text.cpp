@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "base/json.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "remomask/error.h"
 
 namespace remomask::tools {

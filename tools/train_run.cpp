@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/json.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "lab/variants.h"
 #include "remomask/error.h"
 #include "tools/train_command.h"
