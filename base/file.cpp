@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/leftovers.h"
 #include "remomask/error.h"
 
 namespace remomask {
@@ -15,6 +16,8 @@ namespace remomask {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kTemporaryMarker = ".tmp-";
 
 std::string errno_text() { return std::strerror(errno); }
 
@@ -67,11 +70,16 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   if (!parent.empty() && !fs::is_directory(parent)) {
     throw FileError(path_, 0, "the folder does not exist; create it or choose another output");
   }
-  temporary_ = path_ + ".tmp-" + std::to_string(::getpid());
+  remove_leftovers(parent.empty() ? "." : parent.string(), kTemporaryMarker);
+  temporary_ = path_ + kTemporaryMarker + process_tag();
 }
 
 AtomicFile::~AtomicFile() {
-  if (!committed_) ::unlink(temporary_.c_str());
+  if (committed_) return;
+  // SQLite makes further files beside a database that is written to the temporary name.
+  for (const char* ending : {"", "-journal", "-wal", "-shm"}) {
+    ::unlink((temporary_ + ending).c_str());
+  }
 }
 
 void AtomicFile::commit(Durability durability) {

@@ -21,7 +21,8 @@ void write_file_atomically(const std::string& path, std::string_view content,
                            Durability durability = Durability::power_cuts);
 
 /// The same for a library that writes to a path itself: write to
-/// `temporary_path()`, then `commit()`. Without commit the temporary is removed.
+/// `temporary_path()`, then `commit()`. Without commit the temporary is removed. The first one in a
+/// folder also removes the temporary files that killed processes left there.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);

@@ -8,7 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/json.h"
+#include "db/checksum.h"
 #include "db/clip_hash.h"
+#include "db/clip_rows.h"
 #include "db/clip_speed.h"
 #include "db/schema.h"
 #include "db/sqlite.h"
@@ -18,11 +21,8 @@ namespace remomask::db {
 
 namespace {
 
-constexpr const char* kReplaceClip =
-    "remove the clip and add its file again, or restore a snapshot";
 constexpr const char* kRestore = "restore a snapshot";
 constexpr double kUnitTolerance = 1e-3;
-constexpr float kFarthest = 1e6f;  // metres
 
 /// Also false for NaN.
 bool all_below(const std::vector<float>& values, float limit) {
@@ -101,10 +101,13 @@ class Checker {
 
   void check_clips() {
     const int64_t total = connection_.integer("SELECT count(*) FROM clip");
-    SqliteStatement rows(connection_,
-                         "SELECT clip.id, name, clip.frames, labels, content_hash, speed, "
-                         "motion.frames, joints, positions, motion.clip_id IS NULL "
-                         "FROM clip LEFT JOIN motion ON motion.clip_id = clip.id ORDER BY id");
+    const std::string sql =
+        std::string(
+            "SELECT clip.id, name, clip.frames, labels, content_hash, speed, motion.frames, "
+            "joints, positions, motion.clip_id IS NULL, ") +
+        (checksums_ ? "motion.checksum" : "''") +
+        " FROM clip LEFT JOIN motion ON motion.clip_id = clip.id ORDER BY id";
+    SqliteStatement rows(connection_, sql.c_str());
     while (rows.step()) {
       if (monitor_.stop_requested()) throw Interrupted("the check was stopped");
       check_clip(rows);
@@ -116,8 +119,9 @@ class Checker {
   void check_clip(const SqliteStatement& row) {
     const int64_t id = row.integer(0);
     names_[id] = row.text(1);
-    const auto labels = nlohmann::json::parse(row.text(3), nullptr, false);
-    if (!labels.is_object()) add(id, std::string("its labels are no JSON object; ") + kReplaceClip);
+    const auto labels = try_parse_json(row.text(3));
+    const bool sound_labels = labels.is_object();
+    if (!sound_labels) add(id, std::string("its labels are no JSON object; ") + kReplaceClip);
     if (row.integer(9) != 0) return add(id, std::string("has no motion; ") + kReplaceClip);
     Motion motion;
     motion.frames = static_cast<int>(row.integer(6));
@@ -132,7 +136,7 @@ class Checker {
                                  bytes, motion.frames, motion.joints, kReplaceClip));
     }
     motion.positions = row.floats(8);
-    if (!all_below(motion.positions, kFarthest)) {
+    if (!all_near(motion.positions)) {
       return add(id, std::string("a position is no number of metres; ") + kReplaceClip);
     }
     if (clip_content_hash(motion) != row.text(4)) {
@@ -141,6 +145,12 @@ class Checker {
               kReplaceClip);
     } else if (std::abs(mean_root_speed(motion) - row.real(5)) > 1e-6) {
       add(id, std::string("its speed is not that of its motion; ") + kReplaceClip);
+    } else if (!row.text(10).empty() &&
+               row.text(10) != motion_checksum(row.integer(6), row.integer(7), row.blob(8))) {
+      add(id, std::string("its motion is damaged (its checksum differs); ") + kReplaceClip);
+    } else if (sound_labels) {
+      const std::string damage = clip_damage(connection_, id);
+      if (!damage.empty()) add(id, damage);
     }
   }
 
@@ -188,9 +198,10 @@ class Checker {
       int64_t motion, parts;
     };
     std::map<std::string, Widths> widths;
-    SqliteStatement rows(connection_,
-                         "SELECT retriever_hash, clip_id, motion, parts, text FROM embedding "
-                         "ORDER BY retriever_hash, clip_id");
+    const std::string sql = std::string("SELECT retriever_hash, clip_id, motion, parts, text, ") +
+                            (checksums_ ? "checksum" : "''") +
+                            " FROM embedding ORDER BY retriever_hash, clip_id";
+    SqliteStatement rows(connection_, sql.c_str());
     while (rows.step()) {
       if (monitor_.stop_requested()) throw Interrupted("the check was stopped");
       ++report_.embeddings;
@@ -212,12 +223,17 @@ class Checker {
                         (text.empty() || std::abs(vector_length(text) - 1) < kUnitTolerance);
       if (!unit || !all_below(parts, 1 + kUnitTolerance)) {
         add(id, "its vectors of retriever " + retriever + " are not of length 1; " + kReplaceClip);
+      } else if (!rows.text(5).empty() &&
+                 rows.text(5) != embedding_checksum(rows.blob(2), rows.blob(3), rows.blob(4))) {
+        add(id, "its vectors of retriever " + retriever +
+                    " are damaged (their checksum differs); run: remomask index DB --rebuild");
       }
     }
   }
 
   const SqliteConnection& connection_;
   const Monitor& monitor_;
+  const bool checksums_ = connection_.integer("PRAGMA user_version") >= kChecksumVersion;
   CheckReport report_;
   std::map<int64_t, std::string> names_;
 };
@@ -225,7 +241,8 @@ class Checker {
 }  // namespace
 
 CheckReport check_database(const std::string& path, const Monitor& monitor) {
-  const SqliteConnection connection(path, SqliteMode::read_only);
+  SqliteConnection connection(path, SqliteMode::read_only);
+  connection.stop_when([&] { return monitor.stop_requested(); });
   check_schema(connection);
   require_readable_schema(connection);
   // The check of the words needs temporary tables, which query_only refuses as well.

@@ -1,5 +1,7 @@
 #include "db/database.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 
@@ -23,9 +25,24 @@ SqliteMode sqlite_mode(OpenMode mode) {
   throw Error("unknown way to open a database");
 }
 
+/// Device and number of the file, nothing where there is none.
+std::pair<dev_t, ino_t> file_identity(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return {};
+  return {status.st_dev, status.st_ino};
+}
+
 }  // namespace
 
-Database::Impl::Impl(const std::string& path, OpenMode mode) : connection(path, sqlite_mode(mode)) {
+void Database::Impl::require_same_file() const {
+  if (file_identity(connection.path()) == file) return;
+  throw Error(connection.path() +
+              ": was removed or replaced while it was written; what was stored is lost. Run the "
+              "same command again");
+}
+
+Database::Impl::Impl(const std::string& path, OpenMode mode)
+    : connection(path, sqlite_mode(mode)), file(file_identity(path)) {
   if (mode == OpenMode::create && is_empty_database(connection)) create_schema(connection);
   check_schema(connection);
   if (mode == OpenMode::read_only) {
@@ -61,7 +78,10 @@ std::string Database::writer_of(int64_t generation) const {
 }
 
 void Database::begin() { impl_->connection.execute("BEGIN IMMEDIATE"); }
-void Database::commit() { impl_->connection.execute("COMMIT"); }
+void Database::commit() {
+  impl_->connection.execute("COMMIT");
+  impl_->require_same_file();
+}
 void Database::rollback() {
   // After some errors SQLite has rolled back on its own.
   if (impl_->connection.in_transaction()) impl_->connection.execute("ROLLBACK");

@@ -1,6 +1,8 @@
 #include <algorithm>
 
+#include "db/checksum.h"
 #include "db/clip_hash.h"
+#include "db/clip_rows.h"
 #include "db/clip_speed.h"
 #include "db/database.h"
 #include "db/database_impl.h"
@@ -9,33 +11,6 @@
 namespace remomask::db {
 
 namespace {
-
-constexpr const char* kClipColumns =
-    "id, name, source, source_file, start_frame, split, licence, content_hash, motion_group, "
-    "mirrored, skeleton, frames, labels, speed";
-
-Clip read_clip_row(const SqliteStatement& row, const std::string& path) {
-  Clip clip;
-  clip.id = row.integer(0);
-  clip.name = row.text(1);
-  clip.source = row.text(2);
-  clip.source_file = row.text(3);
-  clip.start_frame = static_cast<int>(row.integer(4));
-  clip.split = row.text(5);
-  clip.licence = row.text(6);
-  clip.content_hash = row.text(7);
-  clip.group = row.text(8);
-  clip.mirrored = row.integer(9) != 0;
-  clip.skeleton = row.text(10);
-  clip.frames = static_cast<int>(row.integer(11));
-  clip.speed = row.real(13);
-  clip.labels = nlohmann::json::parse(row.text(12), nullptr, false);
-  if (clip.labels.is_discarded()) {
-    throw Error(path + ": the labels of clip '" + clip.name +
-                "' are not JSON: the database is damaged; restore a backup");
-  }
-  return clip;
-}
 
 void check_split(const std::string& split, const std::string& subject) {
   if (split != "train" && split != "val" && split != "test" && split != "none") {
@@ -94,20 +69,6 @@ std::vector<std::string> sorted_tags(std::vector<std::string> tags) {
   return tags;
 }
 
-/// Hands the texts of a query "clip_id, text" that is ordered by clip to the
-/// clips, which are ordered as well.
-void attach_texts(const SqliteConnection& connection, const char* sql, std::vector<Clip>& clips,
-                  std::vector<std::string> Clip::*member) {
-  SqliteStatement texts(connection, sql);
-  auto clip = clips.begin();
-  while (texts.step()) {
-    const int64_t id = texts.integer(0);
-    while (clip != clips.end() && clip->id < id) ++clip;
-    if (clip == clips.end()) return;
-    if (clip->id == id) ((*clip).*member).push_back(texts.text(1));
-  }
-}
-
 void delete_of_clip(const SqliteConnection& connection, const char* table, int64_t id) {
   const std::string sql = std::string("DELETE FROM ") + table + " WHERE clip_id = ?";
   SqliteStatement(connection, sql.c_str()).bind(1, id).run();
@@ -155,12 +116,15 @@ int64_t Database::add_clip(const Clip& clip, const Motion& motion) {
   const int64_t id = connection.last_insert_id();
   insert_captions(connection, id, clip.captions);
   insert_tags(connection, id, clip.tags);
-  SqliteStatement(connection, "INSERT INTO motion VALUES (?, ?, ?, ?)")
+  SqliteStatement(connection, "INSERT INTO motion VALUES (?, ?, ?, ?, ?)")
       .bind(1, id)
       .bind(2, motion.frames)
       .bind(3, motion.joints)
       .bind(4, motion.positions)
+      .bind(5, motion_checksum(motion.frames, motion.joints,
+                               std::as_bytes(std::span(motion.positions))))
       .run();
+  store_clip_checksum(connection, id);
   impl_->grow_generation();
   scope.commit();
   return id;
@@ -220,7 +184,10 @@ bool Database::update_clip(int64_t id, const ClipChanges& changes) {
     insert_tags(connection, id, *changes.tags);
     changed = true;
   }
-  if (changed) impl_->grow_generation();
+  if (changed) {
+    store_clip_checksum(connection, id);
+    impl_->grow_generation();
+  }
   scope.commit();
   return changed;
 }
@@ -252,50 +219,36 @@ int64_t Database::clip_count() const {
 
 std::vector<Clip> Database::clips() const {
   const ReadSnapshot snapshot(*this);
-  const SqliteConnection& connection = impl_->connection;
-  std::vector<Clip> clips;
-  SqliteStatement rows(connection,
-                       (std::string("SELECT ") + kClipColumns + " FROM clip ORDER BY id").c_str());
-  while (rows.step()) clips.push_back(read_clip_row(rows, path()));
-  attach_texts(connection, "SELECT clip_id, text FROM caption ORDER BY clip_id, position", clips,
-               &Clip::captions);
-  attach_texts(connection, "SELECT clip_id, tag FROM tag ORDER BY clip_id, tag", clips,
-               &Clip::tags);
-  return clips;
+  return read_clips(impl_->connection);
 }
 
 Clip Database::clip(int64_t id) const {
   const ReadSnapshot snapshot(*this);
-  SqliteStatement row(impl_->connection,
-                      (std::string("SELECT ") + kClipColumns + " FROM clip WHERE id = ?").c_str());
-  row.bind(1, id);
-  if (!row.step()) throw Error(path() + ": there is no clip number " + std::to_string(id));
-  Clip clip = read_clip_row(row, path());
-  SqliteStatement captions(impl_->connection,
-                           "SELECT text FROM caption WHERE clip_id = ? ORDER BY position");
-  captions.bind(1, id);
-  while (captions.step()) clip.captions.push_back(captions.text(0));
-  SqliteStatement tags(impl_->connection, "SELECT tag FROM tag WHERE clip_id = ? ORDER BY tag");
-  tags.bind(1, id);
-  while (tags.step()) clip.tags.push_back(tags.text(0));
-  return clip;
+  return read_clip(impl_->connection, id);
 }
 
 Motion Database::motion(int64_t id) const {
-  SqliteStatement row(impl_->connection,
-                      "SELECT motion.frames, joints, positions, skeleton FROM motion "
-                      "JOIN clip ON clip.id = clip_id WHERE clip_id = ?");
+  const std::string sql = std::string("SELECT motion.frames, joints, positions, skeleton, name, ") +
+                          (impl_->has_checksums() ? "motion.checksum" : "''") +
+                          " FROM motion JOIN clip ON clip.id = clip_id WHERE clip_id = ?";
+  SqliteStatement row(impl_->connection, sql.c_str());
   row.bind(1, id);
   if (!row.step()) throw Error(path() + ": there is no clip number " + std::to_string(id));
+  const std::string subject = path() + ": the motion of clip '" + row.text(4) + "' ";
+  const std::string checksum = row.text(5);
+  if (!checksum.empty() &&
+      checksum != motion_checksum(row.integer(0), row.integer(1), row.blob(2))) {
+    throw Error(subject + "is damaged (its checksum differs); " + kReplaceClip);
+  }
   Motion motion;
   motion.frames = static_cast<int>(row.integer(0));
   motion.joints = static_cast<int>(row.integer(1));
   motion.positions = row.floats(2);
   motion.skeleton = row.text(3);
   motion.fps = skeleton_named(motion.skeleton).fps;
-  if (!is_whole_motion(motion)) {
-    throw Error(path() + ": the motion of clip number " + std::to_string(id) +
-                " is cut off: the database is damaged; restore a backup");
+  if (!is_whole_motion(motion)) throw Error(subject + "is cut off; " + kReplaceClip);
+  if (!all_near(motion.positions)) {
+    throw Error(subject + "holds a value that is no position in metres; " + kReplaceClip);
   }
   return motion;
 }

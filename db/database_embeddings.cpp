@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 #include <utility>
 
+#include "db/checksum.h"
 #include "db/database.h"
 #include "db/database_impl.h"
 #include "remomask/error.h"
@@ -17,6 +19,25 @@ Error lacks_vectors(const std::string& path, int64_t id) {
       fmt::format("{}: clip number {} has no vectors of this retriever; "
                   "run: remomask index {}",
                   path, id, path));
+}
+
+/// Columns of read_vectors(), of a database with or without checksums.
+std::string vector_columns(bool checksums) {
+  return std::string("motion, parts, text, ") + (checksums ? "checksum" : "''");
+}
+
+/// The vectors of a clip from vector_columns(), which begin at `column`.
+ClipEmbedding read_vectors(const SqliteStatement& row, int column, int64_t id,
+                           const std::string& path) {
+  const std::string checksum = row.text(column + 3);
+  if (!checksum.empty() && checksum != embedding_checksum(row.blob(column), row.blob(column + 1),
+                                                          row.blob(column + 2))) {
+    throw Error(
+        fmt::format("{0}: the vectors of clip number {1} are damaged (their checksum "
+                    "differs); run: remomask index {0} --rebuild",
+                    path, id));
+  }
+  return {id, row.floats(column), row.floats(column + 1), row.floats(column + 2)};
 }
 
 }  // namespace
@@ -35,7 +56,7 @@ void Database::add_embeddings(const std::string& retriever_hash,
                               const std::vector<ClipEmbedding>& embeddings) {
   SqliteScope scope(impl_->connection);
   SqliteStatement insert(impl_->connection,
-                         "INSERT OR REPLACE INTO embedding VALUES (?, ?, ?, ?, ?)");
+                         "INSERT OR REPLACE INTO embedding VALUES (?, ?, ?, ?, ?, ?)");
   SqliteStatement known(impl_->connection, "SELECT count(*) FROM clip WHERE id = ?");
   for (const ClipEmbedding& embedding : embeddings) {
     known.bind(1, embedding.clip_id).step();
@@ -49,6 +70,9 @@ void Database::add_embeddings(const std::string& retriever_hash,
         .bind(3, embedding.motion)
         .bind(4, embedding.parts)
         .bind(5, embedding.text)
+        .bind(6, embedding_checksum(std::as_bytes(std::span(embedding.motion)),
+                                    std::as_bytes(std::span(embedding.parts)),
+                                    std::as_bytes(std::span(embedding.text))))
         .run();
   }
   impl_->grow_generation();
@@ -57,13 +81,11 @@ void Database::add_embeddings(const std::string& retriever_hash,
 
 std::vector<ClipEmbedding> Database::embeddings(const std::string& retriever_hash) const {
   std::vector<ClipEmbedding> embeddings;
-  SqliteStatement rows(impl_->connection,
-                       "SELECT clip_id, motion, parts, text FROM embedding "
-                       "WHERE retriever_hash = ? ORDER BY clip_id");
+  const std::string sql = "SELECT clip_id, " + vector_columns(impl_->has_checksums()) +
+                          " FROM embedding WHERE retriever_hash = ? ORDER BY clip_id";
+  SqliteStatement rows(impl_->connection, sql.c_str());
   rows.bind(1, retriever_hash);
-  while (rows.step()) {
-    embeddings.push_back({rows.integer(0), rows.floats(1), rows.floats(2), rows.floats(3)});
-  }
+  while (rows.step()) embeddings.push_back(read_vectors(rows, 1, rows.integer(0), path()));
   return embeddings;
 }
 
@@ -72,13 +94,13 @@ std::vector<ClipEmbedding> Database::embeddings(const std::string& retriever_has
   const ReadSnapshot snapshot(*this);
   std::vector<ClipEmbedding> embeddings;
   embeddings.reserve(ids.size());
-  SqliteStatement row(impl_->connection,
-                      "SELECT motion, parts, text FROM embedding "
-                      "WHERE retriever_hash = ? AND clip_id = ?");
+  const std::string sql = "SELECT " + vector_columns(impl_->has_checksums()) +
+                          " FROM embedding WHERE retriever_hash = ? AND clip_id = ?";
+  SqliteStatement row(impl_->connection, sql.c_str());
   for (const int64_t id : ids) {
     row.bind(1, retriever_hash).bind(2, id);
     if (!row.step()) throw lacks_vectors(path(), id);
-    embeddings.push_back({id, row.floats(0), row.floats(1), row.floats(2)});
+    embeddings.push_back(read_vectors(row, 0, id, path()));
     row.reset();
   }
   return embeddings;
@@ -147,12 +169,12 @@ std::vector<std::string> Database::retrievers() const {
 
 std::optional<ClipEmbedding> Database::embedding(const std::string& retriever_hash,
                                                  int64_t clip_id) const {
-  SqliteStatement row(impl_->connection,
-                      "SELECT motion, parts, text FROM embedding "
-                      "WHERE clip_id = ? AND retriever_hash = ?");
+  const std::string sql = "SELECT " + vector_columns(impl_->has_checksums()) +
+                          " FROM embedding WHERE clip_id = ? AND retriever_hash = ?";
+  SqliteStatement row(impl_->connection, sql.c_str());
   row.bind(1, clip_id).bind(2, retriever_hash);
   if (!row.step()) return std::nullopt;
-  return ClipEmbedding{clip_id, row.floats(0), row.floats(1), row.floats(2)};
+  return read_vectors(row, 0, clip_id, path());
 }
 
 }  // namespace remomask::db

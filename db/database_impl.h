@@ -1,5 +1,9 @@
 #pragma once
 
+#include <sys/types.h>
+
+#include <utility>
+
 #include "db/database.h"
 #include "db/schema.h"
 #include "db/sqlite.h"
@@ -24,7 +28,13 @@ struct Database::Impl {
   SqliteConnection connection;
   const std::string token = random_uuid();  ///< signs what is written through this object
 
+  const std::pair<dev_t, ino_t> file;  ///< that was opened
+
   Impl(const std::string& path, OpenMode mode);
+
+  /// Throws Error if another file, or none, lies at the path by now: SQLite goes on writing into
+  /// the one that was removed.
+  void require_same_file() const;
 
   std::optional<int64_t> find_id(const char* sql, const std::string& value) const {
     SqliteStatement statement(connection, sql);
@@ -46,6 +56,10 @@ struct Database::Impl {
 
   /// Asked each time: another program may upgrade the file.
   bool logs_changes() const { return connection.integer("PRAGMA user_version") >= kLoggingVersion; }
+
+  bool has_checksums() const {
+    return connection.integer("PRAGMA user_version") >= kChecksumVersion;
+  }
 
   std::optional<std::string> fact(const std::string& key) const {
     SqliteStatement statement(connection, "SELECT value FROM fact WHERE key = ?");

@@ -1,7 +1,13 @@
 #include "db/schema.h"
 
+#include <algorithm>
+#include <map>
+#include <mutex>
 #include <random>
+#include <utility>
 
+#include "db/checksum.h"
+#include "db/clip_rows.h"
 #include "db/clip_speed.h"
 #include "db/database.h"
 #include "remomask/error.h"
@@ -134,6 +140,15 @@ CREATE TABLE writer (
 INSERT INTO fact SELECT 'changes_since', value FROM fact WHERE key = 'generation';
 )sql";
 
+constexpr const char* kVersion4 = R"sql(
+ALTER TABLE clip ADD COLUMN checksum TEXT NOT NULL DEFAULT '';
+ALTER TABLE motion ADD COLUMN checksum TEXT NOT NULL DEFAULT '';
+ALTER TABLE embedding ADD COLUMN checksum TEXT NOT NULL DEFAULT '';
+)sql";
+
+constexpr const char* kVersions[] = {kVersion1, kVersion2, kVersion3, kVersion4};
+static_assert(std::size(kVersions) == kSchemaVersion);
+
 void set_version(const SqliteConnection& connection, int64_t version) {
   connection.execute(("PRAGMA user_version = " + std::to_string(version)).c_str());
 }
@@ -172,6 +187,94 @@ void upgrade_from_2(const SqliteConnection& connection) {
   set_version(connection, 3);
 }
 
+void fill_checksums(const SqliteConnection& connection) {
+  SqliteStatement motions(connection, "SELECT clip_id, frames, joints, positions FROM motion");
+  SqliteStatement motion(connection, "UPDATE motion SET checksum = ? WHERE clip_id = ?");
+  while (motions.step()) {
+    motion.bind(1, motion_checksum(motions.integer(1), motions.integer(2), motions.blob(3)))
+        .bind(2, motions.integer(0))
+        .run();
+  }
+  SqliteStatement rows(connection,
+                       "SELECT clip_id, retriever_hash, motion, parts, text FROM embedding");
+  SqliteStatement embedding(
+      connection, "UPDATE embedding SET checksum = ? WHERE clip_id = ? AND retriever_hash = ?");
+  while (rows.step()) {
+    embedding.bind(1, embedding_checksum(rows.blob(2), rows.blob(3), rows.blob(4)))
+        .bind(2, rows.integer(0))
+        .bind(3, rows.text(1))
+        .run();
+  }
+  store_clip_checksums(connection);
+}
+
+void upgrade_from_3(const SqliteConnection& connection) {
+  connection.execute(kVersion4);
+  fill_checksums(connection);
+  set_version(connection, 4);
+}
+
+using SchemaObjects = std::map<std::pair<std::string, std::string>, std::string>;
+
+std::string without_blanks(std::string text) {
+  text.erase(std::remove_if(text.begin(), text.end(),
+                            [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }),
+             text.end());
+  return text;
+}
+
+/// What a database holds by type and name, with the statement that made it. The tables behind the
+/// full-text index are SQLite's own: their statements differ between its versions.
+SchemaObjects schema_objects(const SqliteConnection& connection) {
+  SchemaObjects objects;
+  SqliteStatement rows(connection,
+                       "SELECT type, name, sql FROM sqlite_master WHERE name NOT LIKE 'sqlite\\_%' "
+                       "ESCAPE '\\'");
+  while (rows.step()) {
+    const std::string name = rows.text(1);
+    const bool shadow = name.starts_with("caption_words_");
+    objects[{rows.text(0), name}] = shadow ? "" : without_blanks(rows.text(2));
+  }
+  return objects;
+}
+
+/// What a database of a version holds.
+const SchemaObjects& expected_objects(int64_t version) {
+  static std::mutex mutex;
+  static std::map<int64_t, SchemaObjects> known;
+  const std::scoped_lock lock(mutex);
+  const auto found = known.find(version);
+  if (found != known.end()) return found->second;
+  const SqliteConnection memory(":memory:", SqliteMode::create);
+  for (int64_t i = 0; i < version; ++i) memory.execute(kVersions[i]);
+  return known.emplace(version, schema_objects(memory)).first->second;
+}
+
+void require_own_objects(const SqliteConnection& connection, int64_t version) {
+  const SchemaObjects& expected = expected_objects(version);
+  const SchemaObjects found = schema_objects(connection);
+  for (const auto& [object, sql] : found) {
+    const auto& [type, name] = object;
+    const auto own = expected.find(object);
+    if (own == expected.end()) {
+      throw Error(connection.path() + ": holds the " + type + " '" + name +
+                  "', which remomask did not make and which could run statements of its own; "
+                  "if you trust the file, remove it with the sqlite3 program: DROP " +
+                  type + " " + name);
+    }
+    if (own->second != sql) {
+      throw Error(connection.path() + ": the " + type + " '" + name +
+                  "' is not the one that remomask makes: the database is damaged or was changed "
+                  "by another program; restore a backup");
+    }
+  }
+  for (const auto& [object, sql] : expected) {
+    if (found.contains(object)) continue;
+    throw Error(connection.path() + ": the " + object.first + " '" + object.second +
+                "' is missing: the database is damaged; restore a backup");
+  }
+}
+
 }  // namespace
 
 std::string random_uuid() {
@@ -197,9 +300,7 @@ void create_schema(const SqliteConnection& connection) {
   SqliteScope scope(connection);
   // Another program may have made it between our look and our lock.
   if (!is_empty_database(connection)) return;
-  connection.execute(kVersion1);
-  connection.execute(kVersion2);
-  connection.execute(kVersion3);
+  for (const char* version : kVersions) connection.execute(version);
   SqliteStatement(connection, "INSERT INTO fact VALUES ('uuid', ?)").bind(1, random_uuid()).run();
   connection.execute(("PRAGMA application_id = " + std::to_string(kApplicationId)).c_str());
   set_version(connection, kSchemaVersion);
@@ -221,6 +322,7 @@ void check_schema(const SqliteConnection& connection) {
   if (version < 1) {
     throw Error(path + ": has no format version: the database is damaged; restore a backup");
   }
+  require_own_objects(connection, version);
 }
 
 void upgrade_schema(const SqliteConnection& connection) {
@@ -229,6 +331,7 @@ void upgrade_schema(const SqliteConnection& connection) {
   // Another program may have done it between our look and our lock.
   if (connection.integer("PRAGMA user_version") == 1) upgrade_from_1(connection);
   if (connection.integer("PRAGMA user_version") == 2) upgrade_from_2(connection);
+  if (connection.integer("PRAGMA user_version") == 3) upgrade_from_3(connection);
   scope.commit();
 }
 

@@ -6,16 +6,20 @@ namespace remomask::db {
 
 /// Marks a SQLite file as a motion database ("RMMK").
 constexpr int64_t kApplicationId = 0x524d4d4b;
-constexpr int64_t kSchemaVersion = 3;
+constexpr int64_t kSchemaVersion = 4;
 /// Files from this version on can be read without an upgrade.
 constexpr int64_t kOldestReadableVersion = 2;
 /// Of the version that keeps a log of the changed vectors and of who wrote.
 constexpr int64_t kLoggingVersion = 3;
+/// Of the version whose clips, motions and vectors have checksums.
+constexpr int64_t kChecksumVersion = 4;
 
 /// Makes the tables in an empty file.
 void create_schema(const SqliteConnection& connection);
 
-/// Throws Error unless the file is a motion database of this or an older version.
+/// Throws Error unless the file is a motion database of this or an older version and holds the
+/// tables, views and triggers of that version and no others: those of a stranger would run with
+/// our statements.
 void check_schema(const SqliteConnection& connection);
 
 /// Brings an older version to the present one in one transaction; `generation`

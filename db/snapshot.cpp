@@ -63,6 +63,16 @@ bool has_log(const std::string& path) {
   return fs::exists(path + "-wal") || fs::exists(path + "-journal");
 }
 
+/// Takes in the log beside a database that nobody has open, as one that was merely read leaves it.
+void take_in_log(const std::string& path) {
+  try {
+    const SqliteConnection connection(path, SqliteMode::read_write);
+    keep_no_log(connection);
+  } catch (const Error&) {
+    // In use, or no database: the log stays, and the caller says so.
+  }
+}
+
 /// True when SQLite can replace the content of the file in a transaction.
 bool can_be_written(const std::string& path) {
   const SqliteConnection probe(path, SqliteMode::read_write);
@@ -96,6 +106,7 @@ void snapshot_database(const std::string& path, const std::string& target, bool 
   if (fs::exists(target) && fs::equivalent(path, target)) {
     throw FileError(target, 0, "is the database itself; name another file");
   }
+  if (has_log(target)) take_in_log(target);
   if (has_log(target)) {
     throw FileError(target, 0, "is in use, there is a log beside it; name another file");
   }

@@ -15,6 +15,8 @@ static_assert(std::endian::native == std::endian::little, "stored floats are lit
 namespace {
 
 constexpr int kBusyMilliseconds = 5000;
+constexpr int kMaxValueBytes = 64 << 20;  // a motion of 200 frames has 52 kB
+constexpr int kStepsBetweenStopChecks = 100000;
 
 /// Characters that a URI file name may not hold as they are.
 std::string uri_of_path(const std::string& path) {
@@ -56,7 +58,7 @@ std::string sqlite_remedy(int code) {
     case SQLITE_NOMEM:
       return "there is not enough memory; close other programs";
     case SQLITE_TOOBIG:
-      return "a value is larger than SQLite stores; cut the motion into shorter clips";
+      return "a value is larger than 64 MB; cut the motion into shorter clips, or shorten the text";
     default:
       return "check the file with the sqlite3 program's 'PRAGMA integrity_check'";
   }
@@ -83,6 +85,7 @@ SqliteConnection::SqliteConnection(std::string path, SqliteMode mode) : path_(st
       open(uri, SQLITE_OPEN_READWRITE | (mode == SqliteMode::create ? SQLITE_OPEN_CREATE : 0));
     }
     sqlite3_busy_timeout(handle_, kBusyMilliseconds);
+    distrust();
     execute("PRAGMA foreign_keys = ON");
   } catch (...) {
     close();
@@ -116,6 +119,19 @@ void SqliteConnection::open_for_reading(const std::string& uri) {
   open(unchanging ? uri + "?immutable=1" : uri, SQLITE_OPEN_READONLY);
 }
 
+void SqliteConnection::distrust() {
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_limit(handle_, SQLITE_LIMIT_LENGTH, kMaxValueBytes);
+}
+
+void SqliteConnection::stop_when(std::function<bool()> stop) {
+  stop_ = std::move(stop);
+  sqlite3_progress_handler(
+      handle_, kStepsBetweenStopChecks,
+      [](void* self) { return static_cast<SqliteConnection*>(self)->stop_() ? 1 : 0; }, this);
+}
+
 void SqliteConnection::close() {
   sqlite3_close_v2(handle_);
   handle_ = nullptr;
@@ -123,6 +139,7 @@ void SqliteConnection::close() {
 
 void SqliteConnection::fail() const {
   const int code = sqlite3_extended_errcode(handle_);
+  if ((code & 0xff) == SQLITE_INTERRUPT) throw Interrupted("reading " + path_ + " was stopped");
   throw Error(path_ + ": " + sqlite3_errmsg(handle_) + ": " + sqlite_remedy(code));
 }
 

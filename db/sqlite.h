@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,14 +34,20 @@ class SqliteConnection {
   /// For calls that return their code instead of keeping it in the connection.
   [[noreturn]] void fail(int code) const;
   sqlite3* handle() const { return handle_; }
+  /// Statements that run from now on end with Interrupted soon after `stop` returns true.
+  void stop_when(std::function<bool()> stop);
 
  private:
+  /// Files may come from strangers: their schema cannot call what has effects, and values stay
+  /// small enough to be held in memory.
+  void distrust();
   void open(const std::string& uri, int flags);
   void open_for_reading(const std::string& uri);
   void close();
 
   std::string path_;
   sqlite3* handle_ = nullptr;
+  std::function<bool()> stop_;
 };
 
 /// One prepared statement. Parameters count from 1, columns from 0, as in SQLite.

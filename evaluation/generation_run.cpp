@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/json.h"
 #include "base/file.h"
 #include "base/random.h"
 #include "db/clip_filter.h"
@@ -92,7 +93,7 @@ class GenerationResults {
     for (size_t end = content.find('\n'); end != std::string::npos;
          start = end + 1, end = content.find('\n', start)) {
       const std::string line = content.substr(start, end - start);
-      const auto parsed = nlohmann::json::parse(line, nullptr, false);
+      const auto parsed = try_parse_json(line);
       if (++number == 1) {
         if (parsed != protocol) {
           throw FileError(path_, 1,

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "base/json.h"
 #include "evaluation/evaluator_config.h"
 #include "remomask/error.h"
 
@@ -28,7 +29,7 @@ nn::ModelStage import_t2m_evaluator(const nn::TensorFile& file, const std::strin
     throw FileError(path, 0, "lacks the word list \"vocabulary\" in its metadata");
   }
   try {
-    config.vocabulary = nlohmann::json::parse(words->second).get<std::vector<std::string>>();
+    config.vocabulary = parse_json(words->second).get<std::vector<std::string>>();
   } catch (const nlohmann::json::exception&) {
     throw FileError(path, 0, "\"vocabulary\" in its metadata is no JSON list of words");
   }

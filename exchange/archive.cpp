@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/leftovers.h"
 #include "remomask/error.h"
 
 namespace remomask::exchange {
@@ -20,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kUnpackedMarker = "remomask_import-";
 constexpr uint64_t kMostUnpackedBytes = uint64_t{64} << 30;
 constexpr uint64_t kSpareDiskBytes = uint64_t{256} << 20;
 constexpr const char* kArchiveEndings[] = {".tar", ".tar.xz",  ".tar.gz", ".tgz",
@@ -109,7 +111,9 @@ std::string archive_stem(const std::string& path) {
 
 UnpackedArchive::UnpackedArchive(const std::string& path, const Monitor& monitor) {
   if (!fs::is_regular_file(path)) throw FileError(path, 0, "there is no such archive");
-  std::string temporary = (fs::temp_directory_path() / "remomask_import_XXXXXX").string();
+  const fs::path folder = fs::temp_directory_path();
+  remove_leftovers(folder.string(), kUnpackedMarker);
+  std::string temporary = (folder / (kUnpackedMarker + process_tag() + "-XXXXXX")).string();
   if (!::mkdtemp(temporary.data())) {
     throw FileError(temporary, 0,
                     std::string("cannot make a temporary folder: ") + std::strerror(errno) +

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "base/file.h"
+#include "base/json.h"
 #include "remomask/error.h"
 
 namespace remomask::exchange {
@@ -14,9 +15,9 @@ class CaptionLine {
   CaptionLine(const std::string& path, long line, std::string_view text)
       : path_(path), line_(line) {
     try {
-      json_ = nlohmann::json::parse(text);
+      json_ = parse_json(text);
     } catch (const nlohmann::json::exception& error) {
-      fail(std::string("is not JSON (") + error.what() + "); correct or remove the line");
+      fail("is not JSON (" + json_reason(error) + "); correct or remove the line");
     }
     if (!json_.is_object()) fail(R"(is not of the form {"clip": "...", "captions": [...]})");
   }

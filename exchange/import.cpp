@@ -244,6 +244,11 @@ ImportReport import_folder(db::Database& database, const ImportOptions& options,
       [&](size_t i) { return read_source_file(*source, i, imported); },
       [&](size_t i, ReadFile&& file) { writer.store(i, std::move(file)); });
   writer.close();
+  if (!fs::exists(resolved.folder)) {
+    throw Error(options.folder + ": was removed while it was imported; " +
+                std::to_string(writer.report().files_stored) +
+                " of its files were stored. Put it back and run the same import again");
+  }
   writer.report().seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return writer.report();

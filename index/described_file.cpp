@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "base/hash.h"
+#include "base/json.h"
 #include "remomask/error.h"
 
 namespace remomask::index {
@@ -63,9 +64,8 @@ DescribedContent split_described(const std::string& path, std::string_view conte
   const FileError damaged(path, 0, "the index is damaged; " + remedy);
   if (length > content.size() - end) throw damaged;
   const size_t start = content.size() - end - static_cast<size_t>(length);
-  DescribedContent parts{
-      content.substr(0, start),
-      nlohmann::json::parse(content.substr(start, static_cast<size_t>(length)), nullptr, false)};
+  DescribedContent parts{content.substr(0, start),
+                         try_parse_json(content.substr(start, static_cast<size_t>(length)))};
   if (!parts.description.is_object()) throw damaged;
   const int version = parts.description.value("version", 0);
   if (version > kIndexFormat) {

@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "index/described_file.h"
+#include "index/faiss_layout.h"
 #include "remomask/error.h"
 
 namespace remomask::index {
@@ -191,6 +192,12 @@ IndexFile read_index_file(const std::string& path) {
     IndexParts parts = split_index_file(path, mapped.content());
     if (content_hash(parts.body) != parts.header.checksum) {
       throw FileError(path, 0, std::string("the index is damaged; ") + kRebuild);
+    }
+    const FaissSize size{static_cast<int64_t>(parts.header.ids.size()), parts.header.width};
+    if (!fits_layout(parts.faiss, size, /*with_ids=*/true) ||
+        (!parts.exact.empty() && !fits_layout(parts.exact, size, /*with_ids=*/false))) {
+      throw FileError(path, 0,
+                      std::string("the index holds something else than it says; ") + kRebuild);
     }
     IndexFile file;
     file.index = read_faiss<faiss::IndexIDMap2>(parts.faiss, path);

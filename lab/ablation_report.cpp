@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/json.h"
 #include "base/file.h"
 #include "lab/variants.h"
 #include "nn/model_file.h"
@@ -19,7 +20,7 @@ namespace {
 const std::vector<std::string> kSubsets = {"take", "pair", "rare"};
 
 nlohmann::json read_trial(const AblationTrial& trial) {
-  auto document = nlohmann::json::parse(read_file(trial.file), nullptr, false);
+  auto document = try_parse_json(read_file(trial.file));
   if (!document.is_object() || !document.contains("figures")) {
     throw FileError(trial.file, 0, "is not the result of a trial; remove it and run again");
   }

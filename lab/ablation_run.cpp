@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/json.h"
 #include "base/file.h"
 #include "motion/features.h"
 #include "nn/tensor_values.h"
@@ -126,7 +127,7 @@ nlohmann::json trial_document(const AblationPlan& plan, const AblationTrial& tri
 
 AblationClock::AblationClock(std::string path) : path_(std::move(path)) {
   if (!fs::exists(path_)) return;
-  measured_ = nlohmann::json::parse(read_file(path_), nullptr, false);
+  measured_ = try_parse_json(read_file(path_));
   if (!measured_.is_object()) {
     throw FileError(path_, 0, "is no record of times; remove it");
   }

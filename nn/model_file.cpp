@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "base/json.h"
 #include "base/hash.h"
 #include "remomask/error.h"
 
@@ -34,12 +35,12 @@ std::map<std::string, ModelStage> read_stages(
   }
   std::map<std::string, ModelStage> stages;
   try {
-    const auto configs = nlohmann::json::parse(file.metadata["stages"]);
+    const auto configs = parse_json(file.metadata["stages"]);
     for (const auto& [kind, config] : configs.items()) {
       stages[kind] = {kind, config, {}};
     }
   } catch (const nlohmann::json::exception& error) {
-    throw FileError(path, 0, std::string("broken stage list: ") + error.what());
+    throw FileError(path, 0, "broken stage list: " + json_reason(error));
   }
   for (const auto& [name, tensor] : file.tensors) {
     const size_t slash = name.find('/');

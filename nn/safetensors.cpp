@@ -2,6 +2,7 @@
 
 #include <ATen/Functions.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +10,8 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/hash.h"
+#include "base/json.h"
 #include "remomask/error.h"
 
 namespace remomask::nn {
@@ -39,6 +42,34 @@ at::ScalarType type_of(const std::string& path, const std::string& name) {
 }
 
 constexpr uint64_t kMaxHeaderBytes = 64u << 20;
+constexpr const char* kMetadata = "__metadata__";
+constexpr const char* kTensorChecksums = "tensor_checksums";  // a JSON object as text, by name
+constexpr const char* kHeaderChecksum = "header_checksum";    // of the header without itself
+constexpr const char* kDamaged =
+    "; the file is damaged: restore a copy of it, or make it again by the command that made it";
+
+std::string tensor_checksum(const at::Tensor& tensor) {
+  return content_hash({static_cast<const char*>(tensor.data_ptr()), tensor.nbytes()});
+}
+
+/// Takes the checksums out of the header. Throws FileError if the header itself is damaged. Files
+/// of version 0.2 and before, and of other programs, have none.
+nlohmann::json take_checksums(const std::string& path, nlohmann::json& header) {
+  const auto metadata = header.find(kMetadata);
+  if (metadata == header.end()) return {};
+  if (metadata->contains(kHeaderChecksum) != metadata->contains(kTensorChecksums)) {
+    throw FileError(path, 0, std::string("a checksum is missing") + kDamaged);
+  }
+  if (!metadata->contains(kHeaderChecksum)) return {};
+  const auto stated = metadata->at(kHeaderChecksum).get<std::string>();
+  metadata->erase(kHeaderChecksum);
+  if (content_hash(header.dump()) != stated) {
+    throw FileError(path, 0, std::string("the checksum of its header differs") + kDamaged);
+  }
+  nlohmann::json checksums = parse_json(metadata->at(kTensorChecksums).get<std::string>());
+  metadata->erase(kTensorChecksums);
+  return checksums;
+}
 
 /// Reads parts of a file, so that one stage of a large model costs only its own bytes.
 class FileBytes {
@@ -68,7 +99,8 @@ class FileBytes {
 void save_safetensors(const std::string& path, const TensorMap& tensors,
                       const std::map<std::string, std::string>& metadata) {
   nlohmann::json header = nlohmann::json::object();
-  header["__metadata__"] = metadata;
+  header[kMetadata] = metadata;
+  nlohmann::json checksums = nlohmann::json::object();
   uint64_t offset = 0;
   std::vector<at::Tensor> contiguous;
   for (const auto& [name, tensor] : tensors) {
@@ -78,8 +110,11 @@ void save_safetensors(const std::string& path, const TensorMap& tensors,
                     {"shape", data.sizes().vec()},
                     {"data_offsets", {offset, offset + bytes}}};
     offset += bytes;
+    checksums[name] = tensor_checksum(data);
     contiguous.push_back(data);
   }
+  header[kMetadata][kTensorChecksums] = checksums.dump();
+  header[kMetadata][kHeaderChecksum] = content_hash(header.dump());
   std::string head = header.dump();
   head.append((8 - head.size() % 8) % 8, ' ');
   std::string content(8, '\0');
@@ -108,9 +143,11 @@ TensorFile load_safetensors(const std::string& path,
   const uint64_t data_start = 8 + head_bytes;
   const uint64_t data_bytes = source.size() - data_start;
   try {
-    const auto header = nlohmann::json::parse(head);
+    auto header = parse_json(head);
+    const nlohmann::json checksums = take_checksums(path, header);
+    uint64_t data_end = 0;
     for (const auto& [name, entry] : header.items()) {
-      if (name == "__metadata__") {
+      if (name == kMetadata) {
         file.metadata = entry.get<std::map<std::string, std::string>>();
         continue;
       }
@@ -129,13 +166,21 @@ TensorFile load_safetensors(const std::string& path,
           range[1] - range[0] != bytes) {
         throw FileError(path, 0, "tensor \"" + name + "\" lies outside the file (truncated?)");
       }
+      data_end = std::max(data_end, range[1]);
       if (wanted && !wanted(name)) continue;
       at::Tensor tensor = at::empty(shape, at::TensorOptions().dtype(type));
       if (bytes > 0) source.read(data_start + range[0], bytes, tensor.data_ptr());
+      if (!checksums.is_null() && checksums.at(name) != tensor_checksum(tensor)) {
+        throw FileError(path, 0, "the checksum of tensor \"" + name + "\" differs" + kDamaged);
+      }
       file.tensors.emplace(name, tensor);
     }
+    if (data_end != data_bytes) {
+      throw FileError(path, 0, "bytes follow the last tensor" + std::string(kDamaged));
+    }
+    file.has_checksums = !checksums.is_null();
   } catch (const nlohmann::json::exception& error) {
-    throw FileError(path, 0, std::string("broken safetensors header: ") + error.what());
+    throw FileError(path, 0, "broken safetensors header: " + json_reason(error));
   }
   return file;
 }

@@ -8,6 +8,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "base/json.h"
 #include "remomask/error.h"
 
 namespace remomask::rig {
@@ -116,7 +117,7 @@ std::vector<std::string> lacking(const SkeletonMap& map, const std::set<std::str
 
 std::vector<SkeletonMap> parse_skeleton_maps(const std::string& text, const std::string& path) {
   try {
-    const json root = json::parse(text);
+    const json root = parse_json(text);
     std::vector<SkeletonMap> maps;
     if (root.contains("skeletons")) {
       for (const auto& [name, value] : root["skeletons"].items()) {

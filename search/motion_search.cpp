@@ -9,6 +9,7 @@
 #include <sstream>
 #include <unordered_map>
 
+#include "base/json.h"
 #include "base/time.h"
 #include "db/captions_index.h"
 #include "db/clip_filter.h"
@@ -148,7 +149,7 @@ struct MotionSearch::Impl {
   std::optional<Calibration> calibration() const {
     const auto text = database.fact(calibration_fact(retriever->hash()));
     if (!text) return std::nullopt;
-    return parse_calibration(nlohmann::json::parse(*text, nullptr, false));
+    return parse_calibration(try_parse_json(*text));
   }
 
   /// [E] of one caption.

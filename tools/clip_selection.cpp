@@ -4,6 +4,7 @@
 #include <charconv>
 #include <iterator>
 
+#include "base/json.h"
 #include "remomask/error.h"
 
 namespace remomask::tools {
@@ -52,7 +53,7 @@ nlohmann::json parse_labels(const std::vector<std::string>& pairs) {
   nlohmann::json labels = nlohmann::json::object();
   for (const std::string& pair : pairs) {
     const LabelCondition label = db::parse_label_condition(pair);
-    const auto value = nlohmann::json::parse(label.value, nullptr, false);
+    const auto value = try_parse_json(label.value);
     labels[label.key] = value.is_discarded() ? nlohmann::json(label.value) : value;
   }
   return labels;

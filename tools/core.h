@@ -7,6 +7,7 @@
 namespace remomask::tools {
 
 struct AblateCommand;
+struct CheckedFile;
 struct EditCommand;
 struct EvaluateCalibrationCommand;
 struct EvaluateEvaluatorCommand;
@@ -25,6 +26,7 @@ struct TrainCommand;
 /// and wrong usage need none of it.
 struct Core {
   void (*ablate)(const AblateCommand&, Program&);
+  CheckedFile (*check_file)(const std::string&);
   void (*edit)(const EditCommand&, Program&);
   void (*evaluate_calibration)(const EvaluateCalibrationCommand&, Program&);
   void (*evaluate_evaluator)(const EvaluateEvaluatorCommand&, Program&);

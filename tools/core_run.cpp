@@ -1,5 +1,6 @@
 #include "nn/threads.h"
 #include "tools/ablate_command.h"
+#include "tools/check_command.h"
 #include "tools/core.h"
 #include "tools/edit_command.h"
 #include "tools/evaluate_command.h"
@@ -13,6 +14,7 @@ namespace remomask::tools {
 extern "C" __attribute__((visibility("default"))) const Core* remomask_core(int threads) {
   static constexpr Core commands = {
       .ablate = run_ablate,
+      .check_file = check_core_file,
       .edit = run_edit,
       .evaluate_calibration = run_evaluate_calibration,
       .evaluate_evaluator = run_evaluate_evaluator,

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "base/json.h"
 #include "remomask/error.h"
 
 namespace remomask::tools {
@@ -31,7 +32,7 @@ std::string stored_evidence_line(const nlohmann::json& evidence) {
 SidecarText text_of_sidecar(const nlohmann::json& sidecar) {
   if (!sidecar.contains("segments") || !sidecar.at("segments").is_array()) {
     return {sidecar.at("prompt").get<std::string>(),
-            stored_evidence_line(nlohmann::json::parse(sidecar.at("evidence").get<std::string>()))};
+            stored_evidence_line(parse_json(sidecar.at("evidence").get<std::string>()))};
   }
   const nlohmann::json& segments = sidecar.at("segments");
   SidecarText text;
@@ -68,9 +69,9 @@ SidecarText read_sidecar_text(const std::string& motion_path) {
   const std::string path = motion_path + ".json";
   if (!std::filesystem::exists(path)) return {};
   try {
-    return text_of_sidecar(nlohmann::json::parse(read_file(path)));
+    return text_of_sidecar(parse_json(read_file(path)));
   } catch (const nlohmann::json::exception& error) {
-    throw FileError(path, 0, std::string("is not what generate writes: ") + error.what());
+    throw FileError(path, 0, "is not what generate writes: " + json_reason(error));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <torch/version.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -61,6 +62,20 @@ int finish(TerminalProgram& program, int status) {
   return fail(program, {kExitFailed, "output", "cannot write to standard output"});
 }
 
+Failure out_of_memory() {
+  return {kExitFailed, "memory",
+          "out of memory; use smaller batches, fewer clips or fewer threads"};
+}
+
+/// Of a library's exception: what follows the first line are its own frames.
+Failure foreign_failure(const std::string& text) {
+  if (text.find("can't allocate memory") != std::string::npos ||
+      text.find("not enough memory") != std::string::npos) {
+    return out_of_memory();
+  }
+  return {kExitFailed, "error", text.substr(0, text.find('\n'))};
+}
+
 int run(int argc, char** argv) {
   TerminalProgram program;
   CLI::App app{
@@ -79,7 +94,7 @@ int run(int argc, char** argv) {
   const RegisterCommand commands[] = {
       register_generate, register_edit,     register_search,  register_import, register_index,
       register_train,    register_evaluate, register_convert, register_sheet,  register_procedural,
-      register_info,     register_db,       register_ablate,
+      register_info,     register_check,    register_db,      register_ablate,
   };
   for (const RegisterCommand add : commands) add(app, program);
   try {
@@ -98,14 +113,19 @@ int run(int argc, char** argv) {
   } catch (const FileError& error) {
     return fail(program, {kExitFailed, "file", error.what(), error.path(), error.line()});
   } catch (const std::bad_alloc&) {
-    return fail(program,
-                {kExitFailed, "memory", "out of memory; use smaller batches or fewer clips"});
-  } catch (const std::exception& error) {
+    return fail(program, out_of_memory());
+  } catch (const Error& error) {
     return fail(program, {kExitFailed, "error", error.what()});
+  } catch (const std::exception& error) {
+    return fail(program, foreign_failure(error.what()));
   }
 }
 
 }  // namespace
 }  // namespace remomask::tools
 
-int main(int argc, char** argv) { return remomask::tools::run(argc, argv); }
+int main(int argc, char** argv) {
+  // A file that would grow beyond `ulimit -f` then fails to be written, with a message.
+  std::signal(SIGXFSZ, SIG_IGN);
+  return remomask::tools::run(argc, argv);
+}

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/file.h"
+#include "base/json.h"
 #include "lab/variants.h"
 #include "remomask/error.h"
 #include "tools/train_command.h"
@@ -28,11 +29,11 @@ void read_more_captions(const std::string& path, std::vector<std::string>& capti
     begin = end + 1;
     if (text.find_first_not_of(" \r\t") == std::string::npos) continue;
     try {
-      const auto entry = nlohmann::json::parse(text);
+      const auto entry = parse_json(text);
       if (entry.value("split", "") == "test") continue;
       for (const auto& caption : entry.at("captions")) captions.push_back(caption);
     } catch (const nlohmann::json::exception& error) {
-      throw FileError(path, line, std::string("is no line with \"captions\": ") + error.what());
+      throw FileError(path, line, "is not a line with \"captions\": " + json_reason(error));
     }
   }
 }

@@ -106,6 +106,8 @@ void join_stages(const TrainingRecipe& recipe, const StageFile& file, const Trai
                  const std::string& model_path, const Monitor& monitor) {
   std::vector<nn::ModelStage> stages;
   for (const std::string& name : recipe_stages(recipe)) {
+    // A run that was killed between writing the stage and this left it.
+    fs::remove(file(name) + ".checkpoint");
     if (name == "text") continue;
     nn::ModelStage stage = nn::load_stage(file(name), name);
     if (name == "masked" && generator::masked_config(stage.config).max_hits > 0) {

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/json.h"
 #include "base/random.h"
 #include "remomask/error.h"
 
@@ -107,11 +108,25 @@ struct Trainer::Impl {
   }
 
   void load_checkpoint() {
+    try {
+      read_checkpoint();
+    } catch (const nlohmann::json::exception& error) {
+      throw FileError(options.checkpoint_path, 0,
+                      "the checkpoint is damaged (" + json_reason(error) +
+                          "); remove it to train this stage again from its start");
+    } catch (const std::logic_error&) {  // std::stoll of a damaged step
+      throw FileError(options.checkpoint_path, 0,
+                      "the checkpoint is damaged (its step is no number); remove it to train this "
+                      "stage again from its start");
+    }
+  }
+
+  void read_checkpoint() {
     nn::TensorFile file = nn::load_safetensors(options.checkpoint_path);
     if (file.metadata["format"] != kCheckpointFormat) {
       throw FileError(options.checkpoint_path, 0, "is not a training checkpoint");
     }
-    if (nlohmann::json::parse(file.metadata["config"]) != config) {
+    if (parse_json(file.metadata["config"]) != config) {
       throw FileError(options.checkpoint_path, 0,
                       "belongs to a run with other options or data; remove it to start anew, or "
                       "use the options it was made with");
@@ -140,8 +155,8 @@ struct Trainer::Impl {
           std::move(state);
     }
     step = std::stoll(file.metadata["step"]);
-    smooth_loss = nlohmann::json::parse(file.metadata["smooth_loss"]).get<double>();
-    history = nlohmann::json::parse(file.metadata["history"]);
+    smooth_loss = parse_json(file.metadata["smooth_loss"]).get<double>();
+    history = parse_json(file.metadata["history"]);
   }
 
   void exchange_averages() {

@@ -49,13 +49,13 @@ TEST(OldFormats, Version2IsReadAsItIs) {
   EXPECT_FALSE(database.embedding_changes("r", 0));
 }
 
-TEST(OldFormats, BothAreUpgradedWhenTheyAreWritten) {
-  for (const int version : {1, 2}) {
+TEST(OldFormats, AllAreUpgradedWhenTheyAreWritten) {
+  for (const int version : {1, 2, 3}) {
     const TestFolder folder;
     const std::string path = old_database(folder, version);
     expect_content(db::Database(path, db::OpenMode::read_write));
     EXPECT_TRUE(db::check_database(path).defects.empty());
-    EXPECT_EQ(db::upgrade_database(path).version_before, 3);
+    EXPECT_EQ(db::upgrade_database(path).version_before, 4);
   }
 }
 

@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "db/check.h"
 #include "db/database.h"
 #include "db/sqlite.h"
 #include "db/upgrade.h"
@@ -8,7 +9,15 @@
 namespace remomask {
 namespace {
 
-// Takes away what version 3 added.
+// Takes away what version 4 added.
+constexpr const char* kDowngradeTo3 = R"sql(
+ALTER TABLE clip DROP COLUMN checksum;
+ALTER TABLE motion DROP COLUMN checksum;
+ALTER TABLE embedding DROP COLUMN checksum;
+PRAGMA user_version = 3;
+)sql";
+
+// And version 3.
 constexpr const char* kDowngradeTo2 = R"sql(
 DROP TABLE embedding_change; DROP TABLE writer;
 DROP TRIGGER embedding_inserted; DROP TRIGGER embedding_deleted;
@@ -49,7 +58,8 @@ class UpgradeTest : public testing::Test {
   }
 
   void downgrade(int version) {
-    run_sql(path_, kDowngradeTo2);
+    run_sql(path_, kDowngradeTo3);
+    if (version <= 2) run_sql(path_, kDowngradeTo2);
     if (version == 1) run_sql(path_, kDowngradeTo1);
   }
 
@@ -97,6 +107,25 @@ TEST_F(UpgradeTest, Format2IsReadAsItIs) {
   EXPECT_EQ(schema_of(path_), schema);
 }
 
+TEST_F(UpgradeTest, Format3IsReadAsItIsAndItsUpgradeAddsChecksums) {
+  downgrade(3);
+  const std::string schema = schema_of(path_);
+  {
+    const db::Database database(path_, db::OpenMode::read_only);
+    EXPECT_EQ(describe_database(database), before_);
+    EXPECT_EQ(database.embeddings("r").size(), 1u);
+    EXPECT_TRUE(db::check_database(path_).defects.empty());
+    EXPECT_EQ(schema_of(path_), schema);
+  }
+  EXPECT_EQ(db::upgrade_database(path_).version_before, 3);
+  const db::SqliteConnection connection(path_, db::SqliteMode::read_only);
+  for (const char* table : {"clip", "motion", "embedding"}) {
+    const std::string sql = std::string("SELECT count(*) FROM ") + table + " WHERE checksum = ''";
+    EXPECT_EQ(connection.integer(sql.c_str()), 0) << table;
+  }
+  EXPECT_TRUE(db::check_database(path_).defects.empty());
+}
+
 TEST_F(UpgradeTest, TheLogOfChangesBeginsWithTheUpgrade) {
   downgrade(2);
   db::Database database(path_, db::OpenMode::read_write);
@@ -126,7 +155,7 @@ TEST_F(UpgradeTest, CommandReportsAndGivesPagesBack) {
   run_sql(path_, "CREATE TABLE t (x); INSERT INTO t VALUES (zeroblob(1000000)); DROP TABLE t");
   const db::UpgradeReport first = db::upgrade_database(path_);
   EXPECT_EQ(first.version_before, 1);
-  EXPECT_EQ(first.version, 3);
+  EXPECT_EQ(first.version, 4);
   EXPECT_LT(first.bytes + 900000, first.bytes_before);
   const db::UpgradeReport second = db::upgrade_database(path_);
   EXPECT_EQ(second.version_before, 3);

@@ -4,7 +4,9 @@
 #include <torch/torch.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "base/file.h"
 #include "nn/threads.h"
@@ -91,6 +93,42 @@ TEST_F(ModelFileTest, BrokenFilesAreRefused) {
     EXPECT_THROW(nn::load_model(path_), FileError) << "case " << i;
     EXPECT_THROW(nn::load_stage(path_, "tokenizer"), FileError) << "case " << i;
   }
+}
+
+TEST_F(ModelFileTest, EveryFlippedBitIsNoticed) {
+  nn::save_model(path_, {stage("tokenizer")});
+  const std::string good = read_file(path_);
+  // The blanks at the end of the header say nothing.
+  const size_t header_end = good.rfind('}') + 1;
+  for (size_t i = 0; i < good.size(); ++i) {
+    if (i >= header_end && good[i] == ' ') continue;
+    std::string flipped(good);
+    flipped[i] = static_cast<char>(flipped[i] ^ (1 << (i % 8)));
+    write_file_atomically(path_, flipped, Durability::kills);
+    EXPECT_THROW(nn::load_model(path_), FileError) << "byte " << i;
+  }
+  write_file_atomically(path_, good + std::string(8, '\0'));
+  EXPECT_THROW(nn::load_model(path_), FileError);
+}
+
+TEST_F(ModelFileTest, FilesWithoutChecksumsAreReadAndSaySo) {
+  const nn::TensorMap tensors = {{"a/x", torch::arange(6).reshape({2, 3})}};
+  nn::save_safetensors(path_, tensors, {{"note", "old"}});
+  EXPECT_TRUE(nn::load_safetensors(path_).has_checksums);
+  const std::string content = read_file(path_);
+  uint64_t length = 0;
+  std::memcpy(&length, content.data(), sizeof length);
+  auto header = nlohmann::json::parse(content.substr(8, length));
+  header["__metadata__"].erase("tensor_checksums");
+  header["__metadata__"].erase("header_checksum");
+  const std::string head = header.dump();
+  const uint64_t new_length = head.size();
+  std::string old(reinterpret_cast<const char*>(&new_length), sizeof new_length);
+  write_file_atomically(path_, old + head + content.substr(8 + length));
+  const nn::TensorFile file = nn::load_safetensors(path_);
+  EXPECT_FALSE(file.has_checksums);
+  EXPECT_EQ(file.metadata.at("note"), "old");
+  EXPECT_TRUE(file.tensors.at("a/x").equal(tensors.at("a/x")));
 }
 
 TEST_F(ModelFileTest, EveryTensorMustFit) {

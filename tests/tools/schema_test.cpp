@@ -112,6 +112,7 @@ TEST(Schema, DescribesDatabases) {
   EXPECT_EQ(fault_of("clips.json", run_json({"db", "list", database, "--limit", "2"})), "");
   EXPECT_EQ(fault_of("clips.json", run_json({"db", "show", database, "#1"})), "");
   EXPECT_EQ(fault_of("check.json", run_json({"db", "check", database})), "");
+  EXPECT_EQ(fault_of("file_check.json", run_json({"check", database})), "");
   run_json({"db", "export", database, folder.path("clips"), "--format", "npy"});
   for (const auto& entry : std::filesystem::directory_iterator(folder.path("clips"))) {
     if (entry.path().extension() != ".npy") continue;

@@ -1,0 +1,128 @@
+#include "index/faiss_layout.h"
+
+#include <cstring>
+
+namespace remomask::index {
+
+namespace {
+
+constexpr uint64_t kMaxLists = 1 << 20;
+
+/// Takes fields from the front of the bytes, as faiss/impl/index_write.cpp lays them out.
+class Walk {
+ public:
+  explicit Walk(std::string_view bytes) : rest_(bytes) {}
+
+  template <typename T>
+  bool take(T& value) {
+    if (rest_.size() < sizeof value) return false;
+    std::memcpy(&value, rest_.data(), sizeof value);
+    rest_.remove_prefix(sizeof value);
+    return true;
+  }
+
+  bool take_name(std::string_view& name) {
+    name = rest_.substr(0, 4);
+    return skip(4, 1);
+  }
+
+  bool skip(uint64_t count, uint64_t size) {
+    if (count > rest_.size() / size) return false;
+    rest_.remove_prefix(count * size);
+    return true;
+  }
+
+  /// A vector of `count` values of `size` bytes, which says its own length before.
+  bool skip_vector(uint64_t count, uint64_t size) {
+    uint64_t stated = 0;
+    return take(stated) && stated == count && skip(count, size);
+  }
+
+  bool at_end() const { return rest_.empty(); }
+
+ private:
+  std::string_view rest_;
+};
+
+/// The header of every index: width, count, two unused numbers, trained or not, metric.
+bool walk_header(Walk& walk, const FaissSize& expected) {
+  int32_t width = 0, metric = 0;
+  int64_t count = 0, unused = 0;
+  uint8_t trained = 0;
+  float argument = 0;
+  return walk.take(width) && width == expected.width && walk.take(count) &&
+         count == expected.count && walk.take(unused) && walk.take(unused) && walk.take(trained) &&
+         trained <= 1 && walk.take(metric) && (metric <= 1 || walk.take(argument));
+}
+
+bool walk_flat(Walk& walk, const FaissSize& expected) {
+  return walk_header(walk, expected) && walk.skip_vector(static_cast<uint64_t>(expected.count) *
+                                                             static_cast<uint64_t>(expected.width),
+                                                         sizeof(float));
+}
+
+bool walk_lists(Walk& walk, const FaissSize& expected, uint64_t lists) {
+  std::string_view name, kind;
+  uint64_t stated = 0, code_bytes = 0, sizes = 0;
+  if (!walk.take_name(name) || name != "ilar" || !walk.take(stated) || stated != lists ||
+      !walk.take(code_bytes) ||
+      code_bytes != static_cast<uint64_t>(expected.width) * sizeof(float) ||
+      !walk.take_name(kind) || !walk.take(sizes)) {
+    return false;
+  }
+  // "full": the size of every list; "sprs": pairs of list and size.
+  const bool sparse = kind == "sprs";
+  if (!sparse && kind != "full") return false;
+  if (sizes != lists && (!sparse || sizes % 2 != 0 || sizes / 2 > lists)) return false;
+  uint64_t total = 0;
+  for (uint64_t i = 0; i < sizes; ++i) {
+    uint64_t value = 0;
+    if (!walk.take(value)) return false;
+    if (sparse && i % 2 == 0) {
+      if (value >= lists) return false;
+      continue;
+    }
+    if (value > static_cast<uint64_t>(expected.count)) return false;
+    total += value;
+  }
+  return total == static_cast<uint64_t>(expected.count) &&
+         walk.skip(total, code_bytes + sizeof(int64_t));
+}
+
+bool walk_ivf_flat(Walk& walk, const FaissSize& expected) {
+  uint64_t lists = 0, probes = 0;
+  std::string_view quantizer;
+  if (!walk_header(walk, expected) || !walk.take(lists) || lists == 0 || lists > kMaxLists ||
+      !walk.take(probes) || !walk.take_name(quantizer) || !quantizer.starts_with("IxF") ||
+      !walk_flat(walk, {static_cast<int64_t>(lists), expected.width})) {
+    return false;
+  }
+  char direct_map = 0;
+  return walk.take(direct_map) && direct_map == 0 && walk.skip_vector(0, sizeof(int64_t)) &&
+         walk_lists(walk, expected, lists);
+}
+
+}  // namespace
+
+bool fits_layout(std::string_view bytes, const FaissSize& expected, bool with_ids) {
+  if (expected.count < 0 || expected.width < 1) return false;
+  Walk walk(bytes);
+  std::string_view name;
+  if (!walk.take_name(name)) return false;
+  if (with_ids) {
+    if (name != "IxM2" || !walk_header(walk, expected) || !walk.take_name(name)) return false;
+  }
+  if (name.starts_with("IxF")) {
+    if (!walk_flat(walk, expected)) return false;
+  } else if (name == "IwFl") {
+    if (!walk_ivf_flat(walk, expected)) return false;
+  } else {
+    return walk_header(walk, expected);
+  }
+  if (with_ids && !walk.skip_vector(static_cast<uint64_t>(expected.count), sizeof(int64_t))) {
+    return false;
+  }
+  return walk.at_end();
+}
+
+}  // namespace remomask::index
