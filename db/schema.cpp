@@ -323,6 +323,7 @@ void check_schema(const SqliteConnection& connection) {
     throw Error(path + ": has no format version: the database is damaged; restore a backup");
   }
   require_own_objects(connection, version);
+  connection.trust_schema();
 }
 
 void upgrade_schema(const SqliteConnection& connection) {

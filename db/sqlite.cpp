@@ -125,6 +125,10 @@ void SqliteConnection::distrust() {
   sqlite3_limit(handle_, SQLITE_LIMIT_LENGTH, kMaxValueBytes);
 }
 
+void SqliteConnection::trust_schema() const {
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 1, nullptr);
+}
+
 void SqliteConnection::stop_when(std::function<bool()> stop) {
   stop_ = std::move(stop);
   sqlite3_progress_handler(

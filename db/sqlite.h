@@ -34,6 +34,8 @@ class SqliteConnection {
   /// For calls that return their code instead of keeping it in the connection.
   [[noreturn]] void fail(int code) const;
   sqlite3* handle() const { return handle_; }
+  /// Lets triggers use the full-text index, once the schema is known to be ours.
+  void trust_schema() const;
   /// Statements that run from now on end with Interrupted soon after `stop` returns true.
   void stop_when(std::function<bool()> stop);
 

@@ -2,6 +2,7 @@
 
 #include "db/check.h"
 #include "db/database.h"
+#include "db/transaction.h"
 #include "remomask/error.h"
 #include "tests/db/db_test_tools.h"
 
@@ -118,10 +119,10 @@ TEST_F(ChecksumTest, ForeignTriggersViewsAndTablesAreRefusedByName) {
 
 TEST_F(ChecksumTest, StoringIntoARemovedFileFails) {
   db::Database database(path_, db::OpenMode::read_write);
-  database.begin();
+  db::Transaction transaction(database);
   database.add_clip(named_clip("b"), walking_motion(30, 2));
   std::filesystem::remove(path_);
-  EXPECT_NE(error_of([&] { database.commit(); }).find("was removed or replaced"),
+  EXPECT_NE(error_of([&] { transaction.commit(); }).find("was removed or replaced"),
             std::string::npos);
 }
 
