@@ -4,10 +4,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
+#include "base/bounded_file.h"
 #include "base/leftovers.h"
 #include "remomask/error.h"
 
@@ -18,6 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kTemporaryMarker = ".tmp-";
+constexpr uint64_t kFirstPiece = 4096;
+constexpr uint64_t kMaxPipeBytes = uint64_t{1} << 30;
 
 std::string errno_text() { return std::strerror(errno); }
 
@@ -42,17 +47,28 @@ void sync_path(const std::string& path, int flags) {
 
 }  // namespace
 
-std::string read_file(const std::string& path) {
+std::string read_bounded_file(const std::string& path, uint64_t max_bytes) {
   Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (descriptor.get() < 0) throw FileError(path, 0, "cannot open: " + errno_text());
   struct stat status {};
   if (::fstat(descriptor.get(), &status) != 0 || S_ISDIR(status.st_mode)) {
     throw FileError(path, 0, "is not a readable file");
   }
-  std::string content(static_cast<size_t>(status.st_size), '\0');
+  const auto refuse = [&] {
+    throw FileError(path, 0,
+                    "holds more than " + std::to_string(max_bytes >> 20) +
+                        " MiB, the most that is read of one file of this kind; cut it into "
+                        "shorter pieces");
+  };
+  const auto stated = static_cast<uint64_t>(std::max<off_t>(status.st_size, 0));
+  if (stated > max_bytes) refuse();
+  // One byte more than is there finds the end without another allocation.
+  std::string content(std::max<uint64_t>(stated + 1, kFirstPiece), '\0');
   size_t done = 0;
   while (true) {
-    if (done == content.size()) content.resize(done + (done == 0 ? 4096 : 1));
+    if (done == content.size()) {
+      content.resize(done + std::min<uint64_t>(done, max_bytes - done + 1));
+    }
     const ssize_t count = ::read(descriptor.get(), content.data() + done, content.size() - done);
     if (count < 0) {
       if (errno == EINTR) continue;
@@ -60,9 +76,18 @@ std::string read_file(const std::string& path) {
     }
     if (count == 0) break;
     done += static_cast<size_t>(count);
+    if (done > max_bytes) refuse();
   }
   content.resize(done);
   return content;
+}
+
+std::string read_file(const std::string& path) {
+  std::error_code ignored;
+  // A file has an end; a device or a pipe may not have one.
+  return read_bounded_file(path, fs::is_regular_file(path, ignored)
+                                     ? std::numeric_limits<uint64_t>::max()
+                                     : kMaxPipeBytes);
 }
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {

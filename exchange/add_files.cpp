@@ -11,9 +11,12 @@ namespace remomask::exchange {
 
 namespace {
 
-std::vector<PreparedClip> prepare_file(const std::string& path, const AddOptions& options) {
+std::vector<PreparedClip> prepare_file(const std::string& path, const AddOptions& options,
+                                       std::vector<std::string>& warnings) {
   MotionFileOptions reading;
   reading.skeleton_map = options.skeleton_map;
+  reading.fps = options.fps;
+  reading.root = options.root;
   db::Clip clip;
   clip.name = std::filesystem::path(path).stem().string();
   clip.source = options.source;
@@ -25,6 +28,7 @@ std::vector<PreparedClip> prepare_file(const std::string& path, const AddOptions
   clip.labels = options.labels;
   clip.tags = options.tags;
   const LoadedMotion loaded = load_motion(path, reading);
+  warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
   return cut_into_clips(clip, loaded.motion, humanml_skeleton(), options.windows);
 }
 
@@ -36,7 +40,7 @@ AddReport add_files(db::Database& database, const std::vector<std::string>& file
   for (const std::string& file : files) {
     std::vector<std::pair<int64_t, std::string>> stored;
     try {
-      const auto clips = prepare_file(file, options);
+      const auto clips = prepare_file(file, options, report.warnings);
       db::Transaction transaction(database);
       for (const PreparedClip& item : clips) {
         stored.emplace_back(database.add_clip(item.clip, item.motion), item.clip.name);

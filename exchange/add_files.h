@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,16 +18,19 @@ struct AddOptions {
   nlohmann::json labels = nlohmann::json::object();
   std::string split = "none";
   std::string licence;
-  std::string skeleton_map;  ///< as in MotionFileOptions
+  std::string skeleton_map;   ///< as in MotionFileOptions
+  std::optional<double> fps;  ///< likewise
+  std::string root;           ///< likewise
   WindowOptions windows;
 };
 
 struct AddReport {
   std::vector<std::pair<int64_t, std::string>> clips;  ///< ids and names, stored
   std::vector<RejectedFile> rejected;
+  std::vector<std::string> warnings;  ///< what was odd about files that were read all the same
 };
 
-/// Stores single BVH or npy files; a clip is called as its file. The clips of
+/// Stores single motion files; a clip is called as its file. The clips of
 /// one file are stored together or not at all; a file that cannot be read, whose
 /// name is taken or whose motion is there already, is reported and left out.
 AddReport add_files(db::Database& database, const std::vector<std::string>& files,

@@ -1,10 +1,11 @@
 #include "exchange/captions_file.h"
 
+#include <optional>
 #include <string_view>
 
-#include "base/file.h"
 #include "base/json.h"
 #include "remomask/error.h"
+#include "text/encoding.h"
 
 namespace remomask::exchange {
 
@@ -85,23 +86,33 @@ class CaptionLine {
 }  // namespace
 
 CaptionsFile::CaptionsFile(const std::string& path) : path_(path) {
-  const std::string content = read_file(path);
+  const std::string content = text::read_text_file(path);
+  std::optional<FileError> first_failure;
   std::string_view rest = content;
   for (long line = 1; !rest.empty(); ++line) {
     const size_t end = rest.find('\n');
     const std::string_view text = rest.substr(0, end);
     rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
     if (text.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    const CaptionLine parsed(path, line, text);
-    CaptionEntry entry = parsed.entry();
-    const auto [place, is_new] = places_.emplace(entry.clip, entries_.size());
-    if (!is_new) {
-      parsed.fail("clip '" + entry.clip + "' was given in line " +
-                  std::to_string(entries_[place->second].line) +
-                  " already; put all its captions into one line");
+    try {
+      add(CaptionLine(path, line, text).entry());
+    } catch (const FileError& error) {
+      if (!first_failure) first_failure.emplace(error);
+      warnings_.push_back(std::string(error.what()) + ". The line is left out");
     }
-    entries_.push_back(std::move(entry));
   }
+  if (entries_.empty() && first_failure) throw FileError(*first_failure);
+}
+
+void CaptionsFile::add(CaptionEntry entry) {
+  const auto [place, is_new] = places_.emplace(entry.clip, entries_.size());
+  if (!is_new) {
+    throw FileError(path_, entry.line,
+                    "clip '" + entry.clip + "' was given in line " +
+                        std::to_string(entries_[place->second].line) +
+                        " already; put all its captions into one line");
+  }
+  entries_.push_back(std::move(entry));
 }
 
 const CaptionEntry* CaptionsFile::find(const std::string& clip) const {

@@ -27,17 +27,21 @@ struct CaptionEntry {
 class CaptionsFile {
  public:
   CaptionsFile() = default;
-  /// Throws FileError with the line for anything that is not such a line, or a
-  /// clip that is given twice.
+  /// A line that is not such a line, or gives a clip for a second time, is left
+  /// out with a warning that names it. Throws FileError if no line can be used.
   explicit CaptionsFile(const std::string& path);
 
   const std::string& path() const { return path_; }
   const std::vector<CaptionEntry>& entries() const { return entries_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
   /// nullptr when the clip is not there.
   const CaptionEntry* find(const std::string& clip) const;
 
  private:
+  void add(CaptionEntry entry);
+
   std::string path_;
+  std::vector<std::string> warnings_;
   std::vector<CaptionEntry> entries_;
   std::unordered_map<std::string, size_t> places_;
 };

@@ -16,6 +16,7 @@
 #include "motion/canonical.h"
 #include "motion/features.h"
 #include "remomask/error.h"
+#include "text/encoding.h"
 
 namespace remomask::exchange {
 
@@ -120,14 +121,19 @@ void HumanmlFolder::read_splits() {
       warnings_.push_back(path + ": is missing: no clip is in the split '" + split + "'");
       continue;
     }
-    std::istringstream lines(read_file(path));
+    std::istringstream lines(text::read_text_file(path));
+    std::unordered_map<std::string, long> seen;
     std::string id;
     for (long line = 1; std::getline(lines, id); ++line) {
-      id.erase(std::remove_if(id.begin(), id.end(), [](char c) { return c == '\r' || c == ' '; }),
-               id.end());
+      const auto is_blank = [](char c) { return c == '\r' || c == ' ' || c == '\t'; };
+      id.erase(std::remove_if(id.begin(), id.end(), is_blank), id.end());
       if (id.empty()) continue;
       const std::string where = path + ":" + std::to_string(line) + ": clip '" + id + "' ";
-      if (!known_.contains(id)) {
+      const auto [earlier, first_time] = seen.emplace(id, line);
+      if (!first_time) {
+        warnings_.push_back(where + "is listed in line " + std::to_string(earlier->second) +
+                            " already");
+      } else if (!known_.contains(id)) {
         warnings_.push_back(where + "has no motion file");
       } else if (const auto [other, is_new] = splits_.emplace(id, split);
                  !is_new && other->second != split) {
@@ -184,7 +190,7 @@ std::vector<PreparedClip> HumanmlFolder::prepare(size_t i,
 
   // Tags that mean the same frames give one clip.
   std::map<std::pair<int, int>, CaptionedPart> parts;
-  for (const TimedCaptions& timed : read_humanml_texts(text_path(id))) {
+  for (const TimedCaptions& timed : read_humanml_texts(text_path(id), warnings)) {
     const bool whole = timed.to == 0;
     const std::string name = whole ? id : fmt::format("{}@{}-{}", id, timed.from, timed.to);
     const int first = static_cast<int>(timed.from * skeleton->fps);

@@ -12,7 +12,10 @@ struct TimedCaptions {
 };
 
 /// Reads texts/ID.txt of HumanML3D or KIT-ML: lines of caption#tokens#from#to.
-/// Parts in the order of their first line. Throws FileError with the line.
-std::vector<TimedCaptions> read_humanml_texts(const std::string& path);
+/// Fields are counted from the right, as a caption may hold a "#". Parts come in the order of their
+/// first line. A line of another form is left out, with a warning that names it. Throws FileError
+/// if no line can be used.
+std::vector<TimedCaptions> read_humanml_texts(const std::string& path,
+                                              std::vector<std::string>& warnings);
 
 }  // namespace remomask::exchange

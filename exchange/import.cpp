@@ -13,6 +13,7 @@
 #include "exchange/humanml_folder.h"
 #include "exchange/motion_folder.h"
 #include "exchange/ordered_work.h"
+#include "formats/unread_formats.h"
 #include "remomask/error.h"
 
 namespace remomask::exchange {
@@ -235,7 +236,8 @@ ImportReport import_folder(db::Database& database, const ImportOptions& options,
 
   const auto source = open_motion_source(resolved, captions_beside);
   if (source->files().empty()) {
-    throw Error(options.folder + ": holds no .bvh or .npy file; check the path");
+    throw Error(options.folder + ": holds no motion file (" + formats::readable_extensions() +
+                "); check the path");
   }
   const auto imported = database.imported_files(resolved.source);
   ImportWriter writer(database, *source, monitor);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@ struct ImportOptions {
       captions_file;   ///< JSON Lines; empty: FOLDER.jsonl beside or captions.jsonl in the folder
   std::string source;  ///< name of the data set; default: the folder's name
   std::string licence;
-  std::string skeleton_map;  ///< as in MotionFileOptions
+  std::string skeleton_map;   ///< as in MotionFileOptions
+  std::optional<double> fps;  ///< likewise, for all files
+  std::string root;           ///< likewise
   int min_frames = 20;
   int max_frames = kMaxClipFrames;
   int window_overlap = 40;  ///< frames shared by neighbouring windows of a long clip
@@ -35,7 +38,7 @@ struct ImportReport {
   std::vector<std::string> warnings;   ///< captions without a file, files without captions ...
 };
 
-/// Imports a folder of BVH / npy files with a captions file, or a HumanML3D /
+/// Imports a folder of motion files with a captions file, or a HumanML3D /
 /// KIT-ML folder as its authors lay it out (new_joint_vecs, new_joints, texts,
 /// split files). Goes on where an interrupted import stopped; a second import
 /// of the same folder changes nothing.

@@ -1,12 +1,18 @@
 #include "exchange/motion_folder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
-#include "base/file.h"
+#include "base/bounded_file.h"
 #include "base/hash.h"
+#include "formats/acclaim.h"
+#include "formats/motion_reading.h"
 #include "formats/npy.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
@@ -18,12 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_motion_file(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension == ".bvh" || extension == ".npy";
-}
+/// Rates of a file and of its labels that differ by less are the same, rounded.
+constexpr double kRateTolerance = 0.01;
+constexpr uint64_t kMaxMotionBytes = uint64_t{1} << 30;
 
 std::string path_without_extension(const std::string& name) {
   return fs::path(name).replace_extension().generic_string();
@@ -54,6 +57,13 @@ class ReadingLabels {
     }
     options.skeleton_map = text("skeleton");
     return options;
+  }
+
+  /// Frames a second, where the labels say so.
+  std::optional<double> fps() const {
+    const auto* value = label("fps");
+    if (!value || !value->is_number() || !(value->get<double>() > 0)) return std::nullopt;
+    return value->get<double>();
   }
 
   std::string text(const char* key) const {
@@ -104,6 +114,54 @@ LoadedMotion load_with_hint(const SourceFile& file, MotionFileOptions options,
   return loaded;
 }
 
+/// Reads a file by the options and labels that say how. A rate in the labels corrects one that the
+/// file states wrongly or not at all; .npy files never state one, and labels may describe what they
+/// were made from.
+class DescribedFile {
+ public:
+  DescribedFile(const SourceFile& file, const MotionFileOptions& options, bool map_is_hint)
+      : file_(file), options_(options), map_is_hint_(map_is_hint) {}
+
+  Motion load(std::optional<double> labelled_fps, std::vector<std::string>& warnings) {
+    if (options_.fps || !labelled_fps || fs::path(file_.path).extension() == ".npy") {
+      return keep(load_once(options_), warnings);
+    }
+    MotionFileOptions by_label = options_;
+    by_label.fps = labelled_fps;
+    LoadedMotion loaded;
+    try {
+      loaded = load_once(options_);
+    } catch (const Error&) {
+      return keep(load_once(by_label), warnings);  // mends a rate that makes no sense
+    }
+    if (std::abs(loaded.source_fps / *labelled_fps - 1) < kRateTolerance) {
+      return keep(std::move(loaded), warnings);
+    }
+    warnings.push_back(
+        fmt::format("{}: is read at the {:g} frames a second of its labels; the file says {:g}",
+                    file_.name, *labelled_fps, loaded.source_fps));
+    return keep(load_once(by_label), warnings);
+  }
+
+ private:
+  LoadedMotion load_once(const MotionFileOptions& options) {
+    if (!map_is_hint_) return load_motion(file_.path, options);
+    std::vector<std::string> notes;
+    LoadedMotion loaded = load_with_hint(file_, options, notes);
+    loaded.warnings.insert(loaded.warnings.end(), notes.begin(), notes.end());
+    return loaded;
+  }
+
+  static Motion keep(LoadedMotion loaded, std::vector<std::string>& warnings) {
+    warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
+    return std::move(loaded.motion);
+  }
+
+  const SourceFile& file_;
+  const MotionFileOptions options_;
+  const bool map_is_hint_;
+};
+
 /// What an export wrote: canonical already, exactly so in npy.
 Motion load_stored_motion(const std::string& path) {
   MotionFileOptions options;
@@ -130,7 +188,7 @@ MotionFolder::MotionFolder(const ImportOptions& options) : MotionSource(options)
 
 void MotionFolder::find_files() {
   for (const auto& entry : fs::recursive_directory_iterator(options_.folder)) {
-    if (!entry.is_regular_file() || !is_motion_file(entry.path())) continue;
+    if (!entry.is_regular_file() || !formats::is_readable_motion(entry.path().string())) continue;
     files_.push_back({entry.path().lexically_relative(options_.folder).generic_string(), "",
                       entry.path().string(), entry.file_size()});
   }
@@ -171,6 +229,7 @@ void MotionFolder::match_captions() {
                         ": there is no captions file: all clips are stored without captions, in no "
                         "split");
   }
+  warnings_.insert(warnings_.end(), captions_.warnings().begin(), captions_.warnings().end());
   for (const CaptionEntry& entry : captions_.entries()) {
     if (!used.contains(&entry)) {
       warnings_.push_back(captions_.path() + ":" + std::to_string(entry.line) + ": clip '" +
@@ -180,7 +239,11 @@ void MotionFolder::match_captions() {
 }
 
 std::string MotionFolder::fingerprint(size_t i) const {
-  std::string parts = content_hash(read_file(files_[i].path)) + options_fingerprint();
+  std::string parts = content_hash(read_bounded_file(files_[i].path, kMaxMotionBytes));
+  if (fs::path(files_[i].path).extension() == ".amc") {
+    parts += content_hash(read_bounded_file(formats::find_asf(files_[i].path), kMaxMotionBytes));
+  }
+  parts += options_fingerprint();
   if (const CaptionEntry* entry = described_[i]) {
     nlohmann::json description = {entry->captions, entry->labels, entry->split};
     // Only where it is used: the fingerprints of other data sets stay.
@@ -204,9 +267,13 @@ std::vector<PreparedClip> MotionFolder::prepare(size_t i,
   clip.licence = options_.licence;
   clip.group = options_.source + "/" + files_[i].key;
   MotionFileOptions reading;
+  std::optional<double> labelled_fps;
   if (const CaptionEntry* entry = described_[i]) {
     const ReadingLabels labels(captions_.path(), *entry);
-    if (!entry->canonical) reading = labels.options();
+    if (!entry->canonical) {
+      reading = labels.options();
+      labelled_fps = labels.fps();
+    }
     clip.captions = entry->captions;
     clip.labels = entry->labels;
     clip.split = entry->split;
@@ -224,11 +291,12 @@ std::vector<PreparedClip> MotionFolder::prepare(size_t i,
                             window_options());
     }
   }
-  if (!options_.skeleton_map.empty()) reading.skeleton_map = options_.skeleton_map;
-  const LoadedMotion loaded = options_.skeleton_map.empty()
-                                  ? load_with_hint(files_[i], reading, warnings)
-                                  : load_motion(files_[i].path, reading);
-  return cut_into_clips(clip, loaded.motion, humanml_skeleton(), window_options());
+  reading.fps = options_.fps;
+  reading.root = options_.root;
+  const bool map_is_hint = options_.skeleton_map.empty();
+  if (!map_is_hint) reading.skeleton_map = options_.skeleton_map;
+  const Motion motion = DescribedFile(files_[i], reading, map_is_hint).load(labelled_fps, warnings);
+  return cut_into_clips(clip, motion, humanml_skeleton(), window_options());
 }
 
 }  // namespace remomask::exchange

@@ -5,7 +5,8 @@
 
 namespace remomask::exchange {
 
-/// A folder of BVH and npy files, at any depth, with one captions file.
+/// A folder of motion files of any type that load_motion() reads, at any depth, with one captions
+/// file.
 class MotionFolder : public MotionSource {
  public:
   /// options.source and options.captions_file are filled in (the latter may be

@@ -16,9 +16,11 @@ constexpr int kReadingVersion = 1;
 }  // namespace
 
 std::string MotionSource::options_fingerprint() const {
-  const nlohmann::json decisive = {kReadingVersion,       options_.licence,
-                                   options_.skeleton_map, options_.min_frames,
-                                   options_.max_frames,   options_.window_overlap};
+  nlohmann::json decisive = {kReadingVersion,     options_.licence,    options_.skeleton_map,
+                             options_.min_frames, options_.max_frames, options_.window_overlap};
+  // Only where they are used: the fingerprints of other imports stay.
+  if (options_.fps) decisive.push_back(*options_.fps);
+  if (!options_.root.empty()) decisive.push_back(options_.root);
   return decisive.dump();
 }
 

@@ -30,17 +30,28 @@ struct Bvh {
   int frames = 0;
   double frame_time = 0;      ///< seconds
   std::vector<float> values;  ///< [frames][channels]
+  /// What the reader met that it should not have, and what it made of it: "PATH:LINE: sentence".
+  std::vector<std::string> warnings;
 
   int find_joint(std::string_view name) const;  ///< -1 if absent
 };
 
-/// Reads a BVH file of any hierarchy, channel order and frame rate, with LF or CRLF. Throws
-/// FileError with the line of anything malformed, truncated or not finite. Memory is bounded by the
-/// size of the file.
-Bvh read_bvh(const std::string& path);
+struct BvhReading {
+  /// Name of the root joint of the skeleton to read, where a file holds several.
+  std::string root = {};
+  /// The caller knows the frame rate: a Frame Time that is missing or impossible becomes 0.
+  bool frame_time_known = false;
+};
+
+/// Reads a BVH file of any hierarchy, channel order and frame rate, in UTF-8 or UTF-16, as
+/// tolerantly as Blender does: keywords in any case, any line ends, scale channels (left out), a
+/// wrong number of frames, joints of the same name (renamed). Throws FileError with the line of
+/// anything malformed, cut off inside a frame or not finite. Memory is bounded by the size of the
+/// file, which may have 1 GiB.
+Bvh read_bvh(const std::string& path, const BvhReading& reading = {});
 
 /// The same from text; `path` only appears in messages.
-Bvh parse_bvh(std::string_view text, const std::string& path);
+Bvh parse_bvh(std::string_view text, const std::string& path, const BvhReading& reading = {});
 
 /// Formats as BVH text (six decimals).
 std::string format_bvh(const Bvh& bvh);

@@ -1,18 +1,18 @@
 #include "remomask/motion_file.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
+#include <filesystem>
 
-#include "base/file.h"
-#include "formats/axis_detection.h"
+#include "formats/acclaim.h"
+#include "formats/amass.h"
 #include "formats/bvh.h"
+#include "formats/joint_array.h"
 #include "formats/mapped_kinematics.h"
+#include "formats/motion_reading.h"
 #include "formats/motion_writing.h"
 #include "formats/npy.h"
-#include "motion/canonical.h"
-#include "motion/features.h"
+#include "formats/source_motion_reading.h"
+#include "formats/unread_formats.h"
 #include "remomask/error.h"
 #include "rig/skeleton_choice.h"
 
@@ -20,109 +20,89 @@ namespace remomask::formats {
 
 namespace {
 
-constexpr int kJoints = 22;
-
-void check_options(const MotionFileOptions& options) {
-  if (options.metres_per_unit &&
-      !(*options.metres_per_unit > 0 && std::isfinite(*options.metres_per_unit))) {
-    throw Error("metres per unit must be a number above zero");
-  }
-  if (options.up_axis && *options.up_axis != 'X' && *options.up_axis != 'Y' &&
-      *options.up_axis != 'Z') {
-    throw Error(std::string("the up axis must be X, Y or Z, not \"") + *options.up_axis + "\"");
-  }
-  if (options.skip_frames < 0) throw Error("the number of frames to skip cannot be negative");
-}
-
-Motion skip_first(const Motion& motion, int skip) {
-  if (skip >= motion.frames) {
-    throw Error(fmt::format("cannot skip {} frames of {}", skip, motion.frames));
-  }
-  return skip == 0 ? motion : slice(motion, skip, motion.frames);
-}
-
-/// Converts raw positions at the source's rate to 20 fps, metres and Y up; canonical if requested.
-void bring_to_metres(Motion raw, const Motion* rest_pose, const MotionFileOptions& options,
-                     LoadedMotion& loaded) {
-  loaded.source_frames = raw.frames;
-  raw = skip_first(raw, options.skip_frames);
-  loaded.up_axis = options.up_axis ? *options.up_axis : detect_up_axis(raw, rest_pose);
-  loaded.metres_per_unit =
-      options.metres_per_unit ? *options.metres_per_unit : detect_metres_per_unit(raw);
-  const Skeleton& skeleton = humanml_skeleton();
-  Motion motion = motion::resample(raw, loaded.source_fps, skeleton.fps);
-  for (float& value : motion.positions) {
-    value = static_cast<float>(value * loaded.metres_per_unit);
-  }
-  turn_up_axis(motion, loaded.up_axis);
-  motion::CanonicalOptions canonical;
-  canonical.uniform_skeleton = !options.own_proportions;
-  loaded.motion =
-      options.canonical ? motion::canonicalize(motion, skeleton, canonical) : std::move(motion);
-}
-
-LoadedMotion load_bvh_motion(const std::string& path, const MotionFileOptions& options) {
-  const Bvh bvh = read_bvh(path);
-  const rig::ChosenSkeletonMap chosen =
+RawMotion read_bvh_motion(const std::string& path, const MotionFileOptions& options) {
+  Bvh bvh = read_bvh(path, {.root = options.root, .frame_time_known = options.fps.has_value()});
+  check_frame_count(static_cast<size_t>(bvh.frames), path);
+  rig::ChosenSkeletonMap chosen =
       rig::choose_skeleton_map(view_of(bvh), options.skeleton_map, path);
   MappedKinematics kinematics(bvh, chosen.map);
-  Motion raw(bvh.frames, kJoints), rest(1, kJoints);
-  for (int t = 0; t < bvh.frames; ++t) kinematics.positions(t, raw.at(t, 0));
-  kinematics.rest_positions(rest.at(0, 0));
-  LoadedMotion loaded;
-  loaded.skeleton_map = chosen.map.name;
-  loaded.warnings = chosen.warnings;
-  loaded.source_fps = 1 / bvh.frame_time;
-  bring_to_metres(std::move(raw), &rest, options, loaded);
-  return loaded;
+  RawMotion raw;
+  raw.positions = Motion(bvh.frames, 22);
+  raw.rest_pose = Motion(1, 22);
+  for (int t = 0; t < bvh.frames; ++t) kinematics.positions(t, raw.positions.at(t, 0));
+  kinematics.rest_positions(raw.rest_pose->at(0, 0));
+  raw.fps = bvh.frame_time > 0 ? 1 / bvh.frame_time : 0;
+  raw.skeleton_map = chosen.map.name;
+  raw.warnings = std::move(bvh.warnings);
+  raw.warnings.insert(raw.warnings.end(), chosen.warnings.begin(), chosen.warnings.end());
+  return raw;
 }
 
-LoadedMotion load_npy_motion(const std::string& path, const MotionFileOptions& options) {
-  NpyArray array = read_npy(path);
-  const Skeleton& skeleton = humanml_skeleton();
-  const std::vector<size_t>& shape = array.shape;
-  const auto dim = static_cast<size_t>(skeleton.feature_dim());
-  const bool features = shape.size() == 2 && shape[1] == dim;
-  const bool joints = shape.size() == 3 && shape[1] == kJoints && shape[2] == 3;
-  if ((!features && !joints) || shape[0] < 1 || shape[0] > 10'000'000) {
-    throw FileError(path, 0,
-                    fmt::format("has shape ({}); frames x 22 x 3 joints or frames x {} features "
-                                "are needed",
-                                fmt::join(shape, ", "), dim));
+RawMotion read_npy_motion(const std::string& path, const MotionFileOptions&) {
+  RawMotion raw;
+  raw.positions = motion_of_array(read_npy(path), path, raw.warnings);
+  raw.fps = humanml_skeleton().fps;
+  return raw;
+}
+
+/// .npz files may hold joints without saying at what rate, as .npy files do.
+RawMotion read_npz_file(const std::string& path, const MotionFileOptions& options) {
+  RawMotion raw = read_npz_motion(path);
+  if (raw.fps == 0 && !options.fps) {
+    raw.fps = humanml_skeleton().fps;
+    raw.warnings.push_back(
+        "the file states no frame rate: 20 frames a second are taken; give another with --fps");
   }
-  Motion raw;
-  if (features) {
-    motion::Features rows(static_cast<int>(shape[0]), skeleton.feature_dim());
-    rows.values = std::move(array.values);
-    raw = motion::recover_motion(rows, skeleton);
-  } else {
-    raw = Motion(static_cast<int>(shape[0]), kJoints);
-    raw.positions = std::move(array.values);
+  return raw;
+}
+
+RawMotion read_amc_motion(const std::string& path, const MotionFileOptions& options) {
+  AcclaimMotion acclaim = read_amc(path);
+  RawMotion raw = load_source_motion(acclaim.source, path, options);
+  raw.warnings.insert(raw.warnings.begin(), acclaim.warnings.begin(), acclaim.warnings.end());
+  return raw;
+}
+
+using MotionReader = RawMotion (*)(const std::string& path, const MotionFileOptions& options);
+
+/// Null for a file type that is not read.
+MotionReader reader_of(const std::string& extension) {
+  if (extension == ".bvh") return read_bvh_motion;
+  if (extension == ".npy") return read_npy_motion;
+  if (extension == ".npz") return read_npz_file;
+  if (extension == ".amc") return read_amc_motion;
+  return nullptr;
+}
+
+/// Every warning names its file, as errors do.
+void name_file(std::vector<std::string>& warnings, const std::string& path) {
+  for (std::string& warning : warnings) {
+    if (!warning.starts_with(path)) warning = path + ": " + warning;
   }
-  LoadedMotion loaded;
-  loaded.source_fps = skeleton.fps;
-  bring_to_metres(std::move(raw), nullptr, options, loaded);
-  return loaded;
 }
 
 }  // namespace
+
+bool is_readable_motion(const std::string& path) { return reader_of(lower_extension(path)); }
 
 }  // namespace remomask::formats
 
 namespace remomask {
 
 LoadedMotion load_motion(const std::string& path, const MotionFileOptions& options) {
-  formats::check_options(options);
+  formats::check_reading_options(options);
   const std::string extension = formats::lower_extension(path);
+  const formats::MotionReader read = formats::reader_of(extension);
+  if (!read) throw FileError(path, 0, formats::why_unread(extension));
   try {
-    if (extension == ".bvh") return formats::load_bvh_motion(path, options);
-    if (extension == ".npy") return formats::load_npy_motion(path, options);
+    LoadedMotion loaded = formats::finish_reading(read(path, options), options);
+    formats::name_file(loaded.warnings, path);
+    return loaded;
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
     throw FileError(path, 0, error.what());
   }
-  throw FileError(path, 0, "is not of a known file type; motions are read from .bvh and .npy");
 }
 
 WrittenMotion save_motion(const std::string& path, const Motion& motion,

@@ -2,75 +2,48 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <regex>
 
-#include "base/file.h"
+#include "base/bounded_file.h"
+#include "formats/npy_header.h"
 #include "remomask/error.h"
 
 namespace remomask::formats {
 
 namespace {
 
-constexpr size_t kMaxNpyHeader = 1 << 16;
+constexpr uint64_t kMaxNpyBytes = uint64_t{1} << 29;
+constexpr size_t kMaxNpyNumbers = size_t{1} << 27;
 
-struct NpyHeader {
-  std::string text;
-  size_t data_start = 0;
-};
-
-NpyHeader read_npy_header(std::string_view content, const std::string& path) {
-  if (content.size() < 10 || content.substr(0, 6) != "\x93NUMPY") {
-    throw FileError(path, 0, "is not a NumPy .npy file (save it with numpy.save)");
-  }
-  const int version = static_cast<unsigned char>(content[6]);
-  if (version < 1 || version > 3) {
-    throw FileError(path, 0, fmt::format("has .npy format {}; formats 1 to 3 are known", version));
-  }
-  const size_t size_bytes = version == 1 ? 2 : 4;
-  size_t length = 0;
-  if (content.size() >= 8 + size_bytes) {
-    for (size_t i = 0; i < size_bytes; ++i) {
-      length |= static_cast<size_t>(static_cast<unsigned char>(content[8 + i])) << (8 * i);
-    }
-  }
-  const size_t start = 8 + size_bytes;
-  if (length == 0 || length > kMaxNpyHeader || start + length > content.size()) {
-    throw FileError(path, 0, "the .npy header is truncated; copy or save the file again");
-  }
-  return {std::string(content.substr(start, length)), start + length};
-}
-
-std::string npy_field(const NpyHeader& header, const std::string& pattern, const char* name,
-                      const std::string& path) {
-  std::smatch match;
-  if (!std::regex_search(header.text, match, std::regex(pattern))) {
-    throw FileError(path, 0, fmt::format("the .npy header has no readable {}", name));
-  }
-  return match[1];
-}
-
-std::vector<size_t> npy_shape(const std::string& text, const std::string& path) {
-  std::vector<size_t> shape;
-  const std::regex number("[0-9]+");
-  for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) {
-    if (it->length() > 12 || shape.size() == 8) {
-      throw FileError(
-          path, 0,
-          "the .npy shape (" + text.substr(0, 80) + ") is not plausible; save the file again");
-    }
-    shape.push_back(std::stoull(it->str()));
-  }
-  return shape;
+float float_of_half(uint16_t half) {
+  const int exponent = half >> 10 & 31;
+  const int fraction = half & 1023;
+  float value = exponent == 0    ? std::ldexp(static_cast<float>(fraction), -24)
+                : exponent == 31 ? (fraction == 0 ? HUGE_VALF : NAN)
+                                 : std::ldexp(static_cast<float>(fraction + 1024), exponent - 25);
+  return half >> 15 ? -value : value;
 }
 
 template <typename Number>
-void copy_numbers(const char* data, const std::vector<size_t>& shape, bool fortran,
-                  std::vector<float>& out) {
+Number number_at(const char* data, bool big_endian) {
+  char bytes[sizeof(Number)];
+  std::memcpy(bytes, data, sizeof bytes);
+  if (big_endian) std::reverse(bytes, bytes + sizeof bytes);
+  Number number;
+  std::memcpy(&number, bytes, sizeof number);
+  return number;
+}
+
+template <typename Number, typename Convert>
+void copy_numbers(const char* data, const NpyHeader& header, std::vector<float>& out,
+                  Convert convert) {
+  const std::vector<size_t>& shape = header.shape;
   std::vector<size_t> stride(shape.size(), 1);  // of the source, in numbers
   for (size_t i = 1; i < shape.size(); ++i) {
-    if (fortran) {
+    if (header.fortran) {
       stride[i] = stride[i - 1] * shape[i - 1];
     } else {
       const size_t axis = shape.size() - 1 - i;
@@ -81,9 +54,7 @@ void copy_numbers(const char* data, const std::vector<size_t>& shape, bool fortr
   for (float& value : out) {
     size_t source = 0;
     for (size_t axis = 0; axis < shape.size(); ++axis) source += index[axis] * stride[axis];
-    Number number;
-    std::memcpy(&number, data + source * sizeof number, sizeof number);
-    value = static_cast<float>(number);
+    value = convert(number_at<Number>(data + source * sizeof(Number), header.big_endian));
     for (size_t axis = shape.size(); axis-- > 0;) {
       if (++index[axis] < shape[axis]) break;
       index[axis] = 0;
@@ -91,55 +62,66 @@ void copy_numbers(const char* data, const std::vector<size_t>& shape, bool fortr
   }
 }
 
+template <typename Number>
+void copy_plain(const char* data, const NpyHeader& header, std::vector<float>& out) {
+  copy_numbers<Number>(data, header, out, [](Number number) { return static_cast<float>(number); });
+}
+
+void copy_values(const char* data, const NpyHeader& header, std::vector<float>& out) {
+  const size_t bytes = header.item_bytes;
+  if (header.kind == 'f') {
+    if (bytes == 2) return copy_numbers<uint16_t>(data, header, out, float_of_half);
+    return bytes == 4 ? copy_plain<float>(data, header, out)
+                      : copy_plain<double>(data, header, out);
+  }
+  if (header.kind == 'i') {
+    return bytes == 1   ? copy_plain<int8_t>(data, header, out)
+           : bytes == 2 ? copy_plain<int16_t>(data, header, out)
+           : bytes == 4 ? copy_plain<int32_t>(data, header, out)
+                        : copy_plain<int64_t>(data, header, out);
+  }
+  return bytes == 1   ? copy_plain<uint8_t>(data, header, out)
+         : bytes == 2 ? copy_plain<uint16_t>(data, header, out)
+         : bytes == 4 ? copy_plain<uint32_t>(data, header, out)
+                      : copy_plain<uint64_t>(data, header, out);
+}
+
+/// Numbers of an array of this shape; more than `there` if it has more.
+size_t number_count(const std::vector<size_t>& shape, size_t there) {
+  size_t count = 1;
+  for (const size_t extent : shape) {
+    if (extent != 0 && count > there / extent) return there + 1;
+    count *= extent;
+  }
+  return count;
+}
+
 }  // namespace
 
 NpyArray parse_npy(std::string_view content, const std::string& path) {
   const NpyHeader header = read_npy_header(content, path);
-  const std::string type =
-      npy_field(header, "'descr'\\s*:\\s*'([^']*)'", "number type ('descr')", path);
-  if (!type.empty() && type[0] == '>') {
-    throw FileError(path, 0,
-                    "holds big-endian numbers (" + type + "); save it with array.astype('<f4')");
-  }
-  const bool wide = type == "<f8" || type == "=f8";
-  if (!wide && type != "<f4" && type != "=f4") {
-    throw FileError(
-        path, 0,
-        "holds numbers of type " + type + "; float32 or float64 is needed: array.astype('<f4')");
-  }
-  const bool fortran =
-      npy_field(header, "'fortran_order'\\s*:\\s*(True|False)", "'fortran_order'", path) == "True";
-  NpyArray array;
-  array.shape =
-      npy_shape(npy_field(header, "'shape'\\s*:\\s*\\(([^)]*)\\)", "'shape'", path), path);
-  const size_t bytes = wide ? 8 : 4;
-  const size_t there = (content.size() - header.data_start) / bytes;
-  size_t count = 1;
-  for (const size_t extent : array.shape) {
-    if (extent != 0 && count > there / extent) {
-      count = there + 1;
-      break;
-    }
-    count *= extent;
-  }
+  const size_t there = (content.size() - header.data_start) / header.item_bytes;
+  const size_t count = number_count(header.shape, there);
   if (count > there) {
     throw FileError(path, 0,
-                    "holds fewer numbers than its shape (" +
-                        fmt::format("{}", fmt::join(array.shape, ", ")) +
-                        ") says; it is truncated, copy or save it again");
+                    fmt::format("holds fewer numbers than its shape ({}) says; it is truncated, "
+                                "copy or save it again",
+                                fmt::join(header.shape, ", ")));
   }
+  if (count > kMaxNpyNumbers) {
+    throw FileError(path, 0,
+                    fmt::format("holds more than {} million numbers; cut it into shorter clips",
+                                kMaxNpyNumbers / 1'000'000));
+  }
+  NpyArray array;
+  array.shape = header.shape;
   array.values.resize(count);
-  const char* data = content.data() + header.data_start;
-  if (wide) {
-    copy_numbers<double>(data, array.shape, fortran, array.values);
-  } else {
-    copy_numbers<float>(data, array.shape, fortran, array.values);
-  }
+  copy_values(content.data() + header.data_start, header, array.values);
   return array;
 }
 
 NpyArray read_npy(const std::string& path) {
-  const std::string content = read_file(path);
+  const std::string content = read_bounded_file(path, kMaxNpyBytes);
   return parse_npy(content, path);
 }
 

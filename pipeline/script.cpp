@@ -12,6 +12,7 @@
 #include "pipeline/motion_finish.h"
 #include "remomask/error.h"
 #include "text/caption.h"
+#include "text/encoding.h"
 #include "tokenizer/tokenizer_network.h"
 
 namespace remomask {
@@ -33,6 +34,15 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
+/// Whether a word is meant as seconds though it is no number: "2,5", "3s", "2.5sec".
+bool looks_like_seconds(std::string_view word) {
+  const size_t digits = word.find_first_not_of("0123456789.,");
+  if (word.empty() || word[0] < '0' || word[0] > '9') return false;
+  if (digits == std::string_view::npos) return true;
+  const std::string_view unit = word.substr(digits);
+  return unit == "s" || unit == "sec" || unit == "secs" || unit == "seconds";
+}
+
 ScriptLine parse_line(std::string_view text, const std::string& path, long number) {
   ScriptLine result;
   result.line = number;
@@ -41,6 +51,12 @@ ScriptLine parse_line(std::string_view text, const std::string& path, long numbe
   const char* end = first.data() + first.size();
   const auto read = std::from_chars(first.data(), end, seconds);
   if (read.ec != std::errc() || read.ptr != end) {
+    if (looks_like_seconds(first)) {
+      throw FileError(path, number,
+                      fmt::format("\"{}\" is no number of seconds; write it with a decimal point "
+                                  "and without a unit, like 2.5",
+                                  first));
+    }
     result.sentence = text;
     return result;
   }
@@ -70,7 +86,9 @@ void check_sentence(const ScriptLine& line, const std::string& path) {
 
 }  // namespace
 
-std::vector<ScriptLine> parse_script(std::string_view text, const std::string& path) {
+std::vector<ScriptLine> parse_script(std::string_view script, const std::string& path) {
+  const std::string decoded = text::utf8_text(std::string(script));
+  std::string_view text = decoded;
   std::vector<ScriptLine> lines;
   long number = 0;
   while (!text.empty()) {

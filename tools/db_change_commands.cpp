@@ -10,6 +10,7 @@
 #include "remomask/error.h"
 #include "tools/clip_selection.h"
 #include "tools/db_commands.h"
+#include "tools/reading_options.h"
 
 namespace remomask::tools {
 
@@ -27,7 +28,7 @@ void register_add(CLI::App& group, Program& program) {
       "remomask db add motions.sqlite bow.bvh --caption \"a person bows\" --tag new --split train");
   command->add_option("database", options->database, "database file; created when missing")
       ->required();
-  command->add_option("files", options->files, "BVH or npy files")->required();
+  command->add_option("files", options->files, "motion files (BVH, AMC, npy, npz)")->required();
   // The second names are those of `db tag`, where the first ones are filters.
   add_repeatable(*command, "--caption,--add-caption", options->add.captions,
                  "caption of all these files");
@@ -41,6 +42,7 @@ void register_add(CLI::App& group, Program& program) {
       ->capture_default_str();
   command->add_option("--skeleton-map", options->add.skeleton_map,
                       "name of a shipped map or a map file; default: found by joint names");
+  add_reading_options(*command, options->add.fps, options->add.root);
   command->callback([options, &program] {
     options->add.labels = parse_labels(options->labels);
     db::StoringDatabase storing(options->database);
@@ -51,8 +53,9 @@ void register_add(CLI::App& group, Program& program) {
     for (const auto& entry : report.rejected) {
       rejected.push_back({{"file", entry.file}, {"reason", entry.reason}});
     }
-    program.print_json({{"clips", clips}, {"rejected", rejected}});
+    program.print_json({{"clips", clips}, {"rejected", rejected}, {"warnings", report.warnings}});
     if (!program.json) {
+      for (const std::string& warning : report.warnings) program.warn(warning);
       for (const auto& [id, name] : report.clips) fmt::print("added {} as number {}\n", name, id);
       for (const auto& entry : report.rejected) {
         program.warn(entry.file + " was left out: " + entry.reason);

@@ -6,6 +6,7 @@
 #include "tools/core.h"
 
 #include "tools/output_path.h"
+#include "tools/reading_options.h"
 #include "tools/usage.h"
 
 namespace remomask::tools {
@@ -16,7 +17,8 @@ void register_edit(CLI::App& app, Program& program) {
       app, "edit", "make spans and body parts of a motion anew, the rest stays as it is",
       "remomask edit walk.bvh -o edited.bvh --prompt \"someone waves\" --span 1-3 --parts "
       "left_arm");
-  command->add_option("input", options->input, "motion file (.bvh or .npy)")->required();
+  command->add_option("input", options->input, "motion file (BVH, AMC, npy, npz)")->required();
+  add_reading_options(*command, options->reading.fps, options->reading.root, "--input-fps");
   command->add_option("-o,--output", options->output, "motion file (.bvh or .npy)")->required();
   command->add_option("--prompt", options->prompt, "what the person does there")->required();
   command->add_option("--span", options->spans,

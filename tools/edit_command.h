@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "remomask/motion_file.h"
 #include "tools/generation_options.h"
 #include "tools/output_path.h"
 #include "tools/program.h"
@@ -16,7 +17,8 @@ struct EditCommand {
 
   std::string input, output, prompt, spans, sheet;
   std::vector<std::string> parts, cells;
-  double extend = 0;  ///< seconds
+  MotionFileOptions reading;  ///< of the input
+  double extend = 0;          ///< seconds
   int fade = EditOptions().fade;
   FileOptions files;
   FilterOptions filter;

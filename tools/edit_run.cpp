@@ -12,15 +12,16 @@
 #include "tools/evidence_text.h"
 #include "tools/generation_run.h"
 #include "tools/output_path.h"
+#include "tools/reading_options.h"
 
 namespace remomask::tools {
 
 void run_edit(const EditCommand& command, Program& program) {
   using Clock = std::chrono::steady_clock;
   if (command.count == 1) command.overwrite.check(command.output, command.input, program);
-  MotionFileOptions reading;
+  MotionFileOptions reading = command.reading;
   reading.canonical = false;
-  const Motion original = load_motion(command.input, reading).motion;
+  const Motion original = load_motion_of_user(command.input, reading, program);
   const std::vector<EditSpan> spans =
       parse_edit_spans(command.spans, command.parts, command.cells, original.frames);
   EditOptions options;

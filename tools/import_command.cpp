@@ -6,6 +6,7 @@
 #include "exchange/import.h"
 #include "remomask/error.h"
 #include "tools/program.h"
+#include "tools/reading_options.h"
 
 namespace remomask::tools {
 
@@ -39,8 +40,10 @@ void register_import(CLI::App& app, Program& program) {
       app, "import", "store a folder (or .tar.xz pack) of motion files with captions in a database",
       "remomask import bandai1.tar.xz --db motions.sqlite");
   command
-      ->add_option("folder", options->import.folder,
-                   "folder or archive of BVH / npy files, or a HumanML3D / KIT-ML folder")
+      ->add_option(
+          "folder", options->import.folder,
+          "folder or archive of motion files (BVH, AMC, npy, npz), or a HumanML3D / KIT-ML "
+          "folder")
       ->required();
   command->add_option("--db", options->database, "database file; created when missing")->required();
   command->add_option("--captions", options->import.captions_file,
@@ -50,6 +53,7 @@ void register_import(CLI::App& app, Program& program) {
   command->add_option("--licence", options->import.licence, "licence of these motions");
   command->add_option("--skeleton-map", options->import.skeleton_map,
                       "name of a shipped map or a map file; default: found by joint names");
+  add_reading_options(*command, options->import.fps, options->import.root);
   command->add_option("--min-frames", options->import.min_frames, "shorter clips are rejected")
       ->capture_default_str();
   command->add_option("--max-frames", options->import.max_frames, "longer clips become windows")

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/core.h"
+#include "tools/reading_options.h"
 #include "tools/usage.h"
 
 namespace remomask::tools {
@@ -13,9 +14,11 @@ void add_query_options(CLI::App& command, SearchCommand& options) {
   SearchQuery& query = options.query;
   command.add_option("text", query.text,
                      "what to look for; clips with a word that follows a minus are left out");
-  command.add_option("--like", options.like_file, "a motion file (BVH, npy): more like this");
+  command.add_option("--like", options.like_file,
+                     "a motion file (BVH, AMC, npy, npz): more like this");
   command.add_option("--from", options.from, "of the motion file: from this second");
   command.add_option("--to", options.to, "of the motion file: up to this second");
+  add_reading_options(command, options.reading.fps, options.reading.root);
   command.add_option("--like-clip", query.like_clip, "a stored clip by name: more like it");
   command
       .add_option("--parts", query.parts,

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "remomask/motion_file.h"
 #include "remomask/search.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
@@ -15,6 +16,7 @@ struct SearchCommand {
   FileOptions files;
   FilterOptions filter;
   std::string like_file;
+  MotionFileOptions reading;       ///< of like_file
   std::optional<double> from, to;  ///< seconds of the file
   bool ungrouped = false, captions = false;
 };

@@ -6,18 +6,19 @@
 #include "remomask/motion_file.h"
 #include "search/query.h"
 #include "tools/generation_run.h"
+#include "tools/reading_options.h"
 #include "tools/search_command.h"
 
 namespace remomask::tools {
 
 namespace {
 
-SearchQuery complete_query(const SearchCommand& options) {
+SearchQuery complete_query(const SearchCommand& options, Program& program) {
   SearchQuery query = options.query;
   query.filter = options.filter.filter();
   query.grouped = !options.ungrouped;
   if (!options.like_file.empty()) {
-    query.motion = load_motion(options.like_file).motion;
+    query.motion = load_motion_of_user(options.like_file, options.reading, program);
     if (options.from || options.to) {
       query.motion = search::cut_motion(*query.motion, options.from.value_or(0), options.to);
     }
@@ -75,7 +76,7 @@ void print_answer(const SearchAnswer& answer) {
 }
 
 void search_clips(const SearchCommand& options, Program& program) {
-  const SearchQuery query = complete_query(options);
+  const SearchQuery query = complete_query(options, program);
   const SearchAnswer answer = open_model(options.files, program).search(query);
   if (!program.json) {
     print_answer(answer);
@@ -97,7 +98,7 @@ void search_clips(const SearchCommand& options, Program& program) {
 }
 
 void search_captions(const SearchCommand& options, Program& program) {
-  const SearchQuery query = complete_query(options);
+  const SearchQuery query = complete_query(options, program);
   const std::vector<CaptionHit> hits = open_model(options.files, program).captions_for(query);
   if (!program.json) {
     if (hits.empty()) fmt::print("no clip with captions passes the filters\n");

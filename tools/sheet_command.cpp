@@ -10,6 +10,7 @@
 #include "tools/evidence_text.h"
 #include "tools/output_path.h"
 #include "tools/program.h"
+#include "tools/reading_options.h"
 
 namespace remomask::tools {
 
@@ -29,6 +30,7 @@ void register_sheet(CLI::App& app, Program& program) {
     std::vector<std::string> inputs, titles;
     std::string output;
     drawing::SheetOptions sheet;
+    MotionFileOptions reading;
     OutputOptions overwrite;
   };
   auto options = std::make_shared<Options>();
@@ -39,6 +41,7 @@ void register_sheet(CLI::App& app, Program& program) {
   options->overwrite.add(*command);
   command->add_option("--title", options->titles,
                       "title of each row; default: prompt or file name");
+  add_reading_options(*command, options->reading.fps, options->reading.root);
   command->add_option("--heading", options->sheet.heading, "above all rows");
   command->add_option("--poses", options->sheet.poses, "poses in a row")->capture_default_str();
   command->callback([options, &program] {
@@ -54,7 +57,7 @@ void register_sheet(CLI::App& app, Program& program) {
       drawing::SheetRow row;
       label_row(options->inputs[i], row);
       if (i < options->titles.size()) row.title = options->titles[i];
-      row.motion = load_motion(options->inputs[i]).motion;
+      row.motion = load_motion_of_user(options->inputs[i], options->reading, program);
       rows.push_back(row);
     }
     options->overwrite.check(options->output, "", program);

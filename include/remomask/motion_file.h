@@ -14,6 +14,11 @@ struct MotionFileOptions {
   std::optional<double> metres_per_unit;  ///< unset: guessed from the size of the skeleton
   std::optional<char> up_axis;  ///< 'X', 'Y' or 'Z'; unset: found from the rest of the body
   int skip_frames = 0;          ///< frames to drop at the start, at the file's rate
+  /// Frames a second of the file; unset: what the file states. For files that state a wrong rate
+  /// or none.
+  std::optional<double> fps;
+  /// Name of the root joint of the skeleton to read, for files that hold several.
+  std::string root;
   /// false: place, heading, floor and size of the body stay as in the file; only unit, up axis
   /// and frame rate change. What is in metres, Y up and at 20 fps is then read as it is.
   bool canonical = true;
@@ -30,11 +35,12 @@ struct LoadedMotion {
   int source_frames = 0;
   double metres_per_unit = 0;
   char up_axis = 'Y';
-  std::vector<std::string> warnings;  ///< what was repaired or assumed, one sentence each
+  /// What was odd about the file and how it was read all the same: "PATH:LINE: sentence".
+  std::vector<std::string> warnings;
 };
 
-/// Reads .bvh or .npy (T x 22 x 3 joints, or T x 263 features). Throws FileError with the line
-/// and a remedy.
+/// Reads a motion file by its extension: .bvh, .amc with its .asf, .npy and .npz (joints, features
+/// or AMASS poses). Throws FileError with the line and a remedy.
 REMOMASK_API LoadedMotion load_motion(const std::string& path,
                                       const MotionFileOptions& options = {});
 

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace remomask {
+
+/// Whole content of a file that comes from outside. Throws FileError when it cannot be read or
+/// holds more than `max_bytes`: a device or a pipe that never ends must not exhaust the memory.
+std::string read_bounded_file(const std::string& path, uint64_t max_bytes);
+
+}  // namespace remomask
