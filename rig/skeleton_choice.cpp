@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/file.h"
 #include "remomask/error.h"
 #include "rig/own_skeleton.h"
+#include "rig/skeleton_match.h"
 
 namespace remomask::rig {
 
@@ -23,6 +25,23 @@ std::string names_of_shipped_maps() {
   std::vector<std::string> names;
   for (const SkeletonMap& map : shipped_skeleton_maps()) names.push_back(map.name);
   return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Why a skeleton was not recognised, with what the user needs to write a map.
+std::string refusal(const SkeletonView& skeleton, const SkeletonMatch& match) {
+  constexpr size_t kShown = 40;
+  const size_t shown = std::min(kShown, skeleton.size());
+  std::string names = fmt::format(
+      "{}",
+      fmt::join(skeleton.names.begin(), skeleton.names.begin() + static_cast<long>(shown), ", "));
+  if (skeleton.size() > shown) names += fmt::format(" and {} more", skeleton.size() - shown);
+  const std::string reason = match.objection.empty()
+                                 ? fmt::format("missing are {}", fmt::join(match.missing, ", "))
+                                 : match.objection;
+  return fmt::format(
+      "no human skeleton was recognised: {}. Its {} joints: {}. If it is human, say in a map file "
+      "where our 22 joints are (docs/formats.md) and name it with --skeleton-map",
+      reason, skeleton.size(), names);
 }
 
 }  // namespace
@@ -53,7 +72,14 @@ ChosenSkeletonMap choose_skeleton_map(const SkeletonView& skeleton, const std::s
   if (const SkeletonMap* map = fitting_skeleton_map(shipped_skeleton_maps(), skeleton)) {
     return {*map, std::move(warnings)};
   }
-  throw FileError(path, 0, "no known skeleton has these joint names");
+  SkeletonMatch match = match_skeleton(skeleton);
+  if (!match.map) throw FileError(path, 0, refusal(skeleton, match));
+  if (!match.by_names) {
+    warnings.push_back(
+        "the names of the joints say too little; the skeleton was recognised by its shape: look at "
+        "\"remomask skeleton FILE\"");
+  }
+  return {*std::move(match.map), std::move(warnings)};
 }
 
 }  // namespace remomask::rig
