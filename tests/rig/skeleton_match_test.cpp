@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "remomask/error.h"
-#include "rig/name_reading.h"
 #include "rig/mapped_source.h"
+#include "rig/name_reading.h"
 #include "rig/skeleton_choice.h"
 #include "tests/rig/known_rigs.h"
 
