@@ -6,7 +6,6 @@
 
 #include "base/file.h"
 #include "remomask/error.h"
-#include "remomask/motion_file.h"
 
 namespace remomask::exchange {
 
@@ -57,7 +56,7 @@ std::string captions_line(const db::Clip& clip, const std::string& stem) {
 }  // namespace
 
 void export_clips(const db::Database& database, const std::vector<int64_t>& ids,
-                  const std::string& folder, ExportFormat format, const Monitor& monitor) {
+                  const std::string& folder, const ExportOptions& options, const Monitor& monitor) {
   namespace fs = std::filesystem;
   std::error_code failed;
   fs::create_directories(folder, failed);
@@ -66,7 +65,6 @@ void export_clips(const db::Database& database, const std::vector<int64_t>& ids,
     throw FileError(folder, 0, "is not empty; name a new folder, so that nothing is mixed up");
   }
   const db::ReadSnapshot snapshot(database);
-  const std::string extension = format == ExportFormat::bvh ? ".bvh" : ".npy";
   FileNames names;
   std::string captions;
   for (size_t i = 0; i < ids.size(); ++i) {
@@ -75,7 +73,8 @@ void export_clips(const db::Database& database, const std::vector<int64_t>& ids,
     }
     const db::Clip clip = database.clip(ids[i]);
     const std::string stem = names.choose(clip.name);
-    save_motion((fs::path(folder) / (stem + extension)).string(), database.motion(ids[i]));
+    save_motion((fs::path(folder) / (stem + options.extension)).string(), database.motion(ids[i]),
+                options.writing);
     captions += captions_line(clip, stem);
     monitor.report({"export " + database.path(), static_cast<double>(i + 1),
                     static_cast<double>(ids.size()), ""});

@@ -5,19 +5,24 @@
 #include <vector>
 
 #include "db/database.h"
+#include "remomask/motion_file.h"
 #include "remomask/progress.h"
 
 namespace remomask::exchange {
 
-enum class ExportFormat { bvh, npy };
+struct ExportOptions {
+  std::string extension = ".npy";  ///< of the files: a format that save_motion() writes
+  MotionWriteOptions writing;
+};
 
 /// Writes these clips as motion files with a captions.jsonl that import_folder()
 /// reads back: name, captions, labels, split, licence, group and tags return; the
-/// very positions do from npy, those of bvh within the precision of its
-/// rotations. `folder` is made, or must be empty. Throws Error otherwise, for a
-/// clip that is not there, and Interrupted when stopped; captions.jsonl comes
+/// very positions do from npy, those of other formats as they are on the one rigid
+/// skeleton that rotations are written on. `folder` is made, or must be empty. Throws Error
+/// otherwise, for a clip that is not there, and Interrupted when stopped; captions.jsonl comes
 /// last, a folder without it is not complete.
 void export_clips(const db::Database& database, const std::vector<int64_t>& ids,
-                  const std::string& folder, ExportFormat format, const Monitor& monitor = {});
+                  const std::string& folder, const ExportOptions& options,
+                  const Monitor& monitor = {});
 
 }  // namespace remomask::exchange

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include "base/counted.h"
+#include "formats/motion_writing.h"
 #include "remomask/motion_file.h"
 #include "tools/output_path.h"
 #include "tools/program.h"
 #include "tools/reading_options.h"
 #include "tools/usage.h"
+#include "tools/write_options.h"
 
 namespace remomask::tools {
 
@@ -15,18 +17,21 @@ void register_convert(CLI::App& app, Program& program) {
     double metres_per_unit = 0;
     MotionFileOptions file;
     OutputOptions overwrite;
+    WriteOptions writing;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      add_command(app, "convert", "convert a motion file to 22 joints at 20 fps, as BVH or npy",
+      add_command(app, "convert", "convert a motion file to 22 joints, on one skeleton",
                   "remomask convert take.bvh joints.npy\n"
-                  "  remomask convert 01_10.amc walk.bvh --fps 60");
+                  "  remomask convert 01_10.amc walk.bvh --fps 60 --output-fps 30 --names unreal");
   command
       ->add_option("input", options->input,
                    ".bvh, .amc (its .asf beside it), .npy or .npz (joints, features, AMASS poses)")
       ->required();
-  command->add_option("output", options->output, ".bvh or .npy")->required();
+  command->add_option("output", options->output, formats::written_extensions())->required();
   options->overwrite.add(*command);
+  options->writing.add(*command, "--output-fps");
+  options->writing.add_own_proportions(*command);
   command->add_option("--skeleton-map", options->file.skeleton_map, "map name or file");
   command->add_option("--up-axis", options->up_axis, "X, Y or Z; default: detected")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
@@ -37,23 +42,30 @@ void register_convert(CLI::App& app, Program& program) {
   command->callback([options, &program] {
     if (!options->up_axis.empty()) options->file.up_axis = options->up_axis[0];
     if (options->metres_per_unit > 0) options->file.metres_per_unit = options->metres_per_unit;
+    const MotionWriteOptions writing = options->writing.chosen(options->output);
+    options->file.own_proportions = writing.own_proportions;
     const LoadedMotion loaded = load_motion(options->input, options->file);
     options->overwrite.check(options->output, options->input, program);
-    save_motion(options->output, loaded.motion);
+    const WrittenMotion written = save_motion(options->output, loaded.motion, writing);
     if (program.json) {
-      return program.print_json({{"output", options->output},
-                                 {"frames", loaded.motion.frames},
-                                 {"skeleton_map", loaded.skeleton_map},
-                                 {"source_fps", loaded.source_fps},
-                                 {"source_frames", loaded.source_frames},
-                                 {"metres_per_unit", loaded.metres_per_unit},
-                                 {"up_axis", std::string(1, loaded.up_axis)},
-                                 {"warnings", loaded.warnings}});
+      nlohmann::json answer = {{"output", options->output},
+                               {"frames", loaded.motion.frames},
+                               {"skeleton_map", loaded.skeleton_map},
+                               {"source_fps", loaded.source_fps},
+                               {"source_frames", loaded.source_frames},
+                               {"metres_per_unit", loaded.metres_per_unit},
+                               {"up_axis", std::string(1, loaded.up_axis)},
+                               {"warnings", loaded.warnings}};
+      add_written(answer, written);
+      print_loop(written, program);
+      return program.print_json(answer);
     }
     for (const std::string& warning : loaded.warnings) program.warn(warning);
-    fmt::print("{}: {} at 20 fps (from {} at {:g} fps, skeleton map {})\n", options->output,
-               counted(loaded.motion.frames, "frame"), counted(loaded.source_frames, "frame"),
-               loaded.source_fps, loaded.skeleton_map.empty() ? "none" : loaded.skeleton_map);
+    fmt::print("{}: {} at {:g} fps (from {} at {:g} fps, skeleton map {})\n", options->output,
+               counted(written.frames, "frame"), written.fps,
+               counted(loaded.source_frames, "frame"), loaded.source_fps,
+               loaded.skeleton_map.empty() ? "none" : loaded.skeleton_map);
+    print_loop(written, program);
   });
 }
 

@@ -3,8 +3,10 @@
 #include "base/counted.h"
 #include "db/merge.h"
 #include "exchange/export.h"
+#include "formats/motion_writing.h"
 #include "tools/clip_selection.h"
 #include "tools/db_commands.h"
+#include "tools/write_options.h"
 
 namespace remomask::tools {
 
@@ -54,7 +56,8 @@ void register_merge(CLI::App& group, Program& program) {
 void register_export(CLI::App& group, Program& program) {
   struct Options {
     std::string database, folder;
-    exchange::ExportFormat format = exchange::ExportFormat::npy;
+    std::string format = "npy";
+    WriteOptions writing;
     ClipSelection selection;
   };
   auto options = std::make_shared<Options>();
@@ -64,16 +67,22 @@ void register_export(CLI::App& group, Program& program) {
   command->add_option("database", options->database, "database file")->required();
   command->add_option("folder", options->folder, "new or empty folder")->required();
   options->selection.add(*command);
-  const std::map<std::string, exchange::ExportFormat> formats = {
-      {"bvh", exchange::ExportFormat::bvh}, {"npy", exchange::ExportFormat::npy}};
+  std::vector<std::string> known;
+  for (const formats::MotionFormat& format : formats::written_formats()) {
+    known.emplace_back(format.extension.substr(1));
+  }
   command
       ->add_option("--format", options->format,
-                   "npy (default) keeps the exact positions, bvh opens in other programs")
-      ->transform(CLI::CheckedTransformer(formats).description("{bvh,npy}"));
+                   "npy (default) keeps the exact positions, the others open in other programs")
+      ->check(CLI::IsMember(known));
+  options->writing.add(*command);
   command->callback([options, &program] {
+    exchange::ExportOptions writing;
+    writing.extension = "." + options->format;
+    writing.writing = options->writing.chosen(writing.extension);
     const db::Database database(options->database, db::OpenMode::read_only);
     const auto ids = options->selection.ids(database);
-    exchange::export_clips(database, ids, options->folder, options->format, program.monitor());
+    exchange::export_clips(database, ids, options->folder, writing, program.monitor());
     program.finish_progress();
     if (program.json) {
       return program.print_json({{"folder", options->folder}, {"clips", ids.size()}});

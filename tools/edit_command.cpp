@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 
 #include "base/time.h"
+#include "formats/motion_writing.h"
 #include "tools/core.h"
-
 #include "tools/output_path.h"
 #include "tools/reading_options.h"
 #include "tools/usage.h"
@@ -19,7 +19,10 @@ void register_edit(CLI::App& app, Program& program) {
       "left_arm");
   command->add_option("input", options->input, "motion file (BVH, AMC, npy, npz)")->required();
   add_reading_options(*command, options->reading.fps, options->reading.root, "--input-fps");
-  command->add_option("-o,--output", options->output, "motion file (.bvh or .npy)")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "motion file (" + formats::written_extensions() + ")")
+      ->required();
   command->add_option("--prompt", options->prompt, "what the person does there")->required();
   command->add_option("--span", options->spans,
                       "A-B[,C-D ...] in seconds; start and end are times, too; default with "
@@ -50,8 +53,10 @@ void register_edit(CLI::App& app, Program& program) {
   options->filter.add(*command);
   options->generation.add(*command);
   options->overwrite.add(*command);
+  options->writing.add(*command);
   command->callback([options, &program] {
     require_writable_output(options->output);
+    options->writing.chosen(options->output);
     core(program).edit(*options, program);
   });
 }

@@ -8,6 +8,7 @@
 #include "tools/output_path.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
+#include "tools/write_options.h"
 
 namespace remomask::tools {
 
@@ -24,6 +25,7 @@ struct EditCommand {
   FilterOptions filter;
   GenerationOptions generation;
   OutputOptions overwrite;
+  WriteOptions writing;
   int count = 1;
 };
 

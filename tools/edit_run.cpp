@@ -50,8 +50,10 @@ void run_edit(const EditCommand& command, Program& program) {
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const std::string path = sample_path(command.output, i, command.count);
     if (command.count > 1) command.overwrite.check(path, command.input, program);
-    save_motion(path, made);
+    const WrittenMotion written = save_motion(path, made, command.writing.chosen(path));
     motions.push_back(answer_entry(pipeline::motion_document(made), path, seconds));
+    add_written(motions.back(), written);
+    print_loop(written, program);
     rows.push_back({command.prompt, evidence_line(made.evidence), made.motion});
     ++options.seed;
     if (program.json) continue;

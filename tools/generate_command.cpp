@@ -6,6 +6,7 @@
 
 #include "tools/core.h"
 
+#include "formats/motion_writing.h"
 #include "remomask/error.h"
 #include "text/caption.h"
 #include "tools/output_path.h"
@@ -38,7 +39,10 @@ void register_generate(CLI::App& app, Program& program) {
   command->add_option("--script", options->script,
                       "several sentences in a row, instead of the prompt: a file with a line "
                       "\"SECONDS  sentence\" each");
-  command->add_option("-o,--output", options->output, "motion file (.bvh or .npy)")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "motion file (" + formats::written_extensions() + ")")
+      ->required();
   command->add_option("--sheet", options->sheet, "also draw a contact sheet (.png)");
   command->add_option("--seconds", options->generation.generate.seconds,
                       "length, 1 to 600, kept to the frame (20 a second); default: see --length");
@@ -62,11 +66,13 @@ void register_generate(CLI::App& app, Program& program) {
   options->filter.add(*command);
   options->generation.add(*command);
   options->overwrite.add(*command);
+  options->writing.add(*command);
   command->callback([options, prompt, &program] {
     if (prompt->count() == 0 && options->script.empty()) {
       throw CLI::RequiredError("a sentence, or --script");
     }
     require_writable_output(options->output);
+    options->writing.chosen(options->output);
     check_prompt_or_script(options->prompt, options->script, options->generation, options->count);
     if (options->prompt.size() > text::kMostCaptionBytes) {
       program.warn(fmt::format("only the first {} characters of the prompt can be read",

@@ -6,6 +6,7 @@
 #include "tools/output_path.h"
 #include "tools/program.h"
 #include "tools/workspace.h"
+#include "tools/write_options.h"
 
 namespace remomask::tools {
 
@@ -16,6 +17,7 @@ struct GenerateCommand {
   FilterOptions filter;
   GenerationOptions generation;
   OutputOptions overwrite;
+  WriteOptions writing;
   int count = 1;
 };
 

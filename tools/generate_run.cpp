@@ -66,16 +66,19 @@ void run_script(const GenerateCommand& command, const TextToMotion& remomask,
   program.finish_progress();
   const double seconds = seconds_since(start);
   command.overwrite.check(command.output, "", program);
-  save_motion(command.output, made);
+  const WrittenMotion written =
+      save_motion(command.output, made, command.writing.chosen(command.output));
   std::vector<drawing::SheetRow> rows;
   for (const ScriptedSegment& segment : made.segments) {
     rows.push_back({segment.sentence, evidence_line(segment.evidence),
                     slice(made.motion, segment.first, segment.last)});
   }
   if (!program.json) print_script(command.output, made, seconds);
+  print_loop(written, program);
   finish_sheet(command.sheet, rows, program);
   nlohmann::json entry = answer_entry(pipeline::motion_document(made), command.output, seconds);
   entry["script_file"] = command.script;
+  add_written(entry, written);
   print_motions(program, nlohmann::json::array({entry}));
 }
 
@@ -102,8 +105,9 @@ void run_generate(const GenerateCommand& command, Program& program) {
     const double seconds = seconds_since(start);
     const std::string path = sample_path(command.output, i, command.count);
     command.overwrite.check(path, "", program);
-    save_motion(path, made);
+    const WrittenMotion written = save_motion(path, made, command.writing.chosen(path));
     motions.push_back(answer_entry(pipeline::motion_document(made), path, seconds));
+    add_written(motions.back(), written);
     rows.push_back({command.prompt, evidence_line(made.evidence), made.motion});
     if (!program.json) {
       fmt::print("{}: {} ({:.1f} s of motion) in {:.2f} s, seed {}\n", path,
@@ -111,6 +115,7 @@ void run_generate(const GenerateCommand& command, Program& program) {
       print_followed(made.evidence);
       if (i == 0 || options.influence) print_evidence(made.evidence);
     }
+    print_loop(written, program);
     ++options.seed;
   }
   finish_sheet(command.sheet, rows, program);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "formats/motion_writing.h"
 #include "remomask/error.h"
 
 namespace remomask::tools {
@@ -12,9 +13,7 @@ namespace fs = std::filesystem;
 
 void require_writable_output(const std::string& output) {
   const fs::path path(output);
-  if (path.extension() != ".bvh" && path.extension() != ".npy") {
-    throw Error("output \"" + output + "\": the format is chosen by the ending .bvh or .npy");
-  }
+  formats::written_format(output);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(folder)) {
     throw Error("output \"" + output + "\": the folder does not exist; create it first");

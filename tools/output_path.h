@@ -8,7 +8,7 @@
 namespace remomask::tools {
 
 /// Before minutes of work: can a motion be stored there at all? Throws Error for
-/// an ending other than .bvh and .npy, and for a folder that does not exist.
+/// an ending that no format has, and for a folder that does not exist.
 void require_writable_output(const std::string& output);
 
 /// --force: what a command does where its output exists. Without it, an output that is the input is

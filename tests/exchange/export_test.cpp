@@ -56,7 +56,7 @@ class ExportTest : public testing::Test {
 };
 
 TEST_F(ExportTest, NpyReturnsToTheSameClips) {
-  exchange::export_clips(database_, ids_, folder_ / "out", exchange::ExportFormat::npy);
+  exchange::export_clips(database_, ids_, folder_ / "out", exchange::ExportOptions{});
   db::Database again(folder_ / "again", db::OpenMode::create);
   const exchange::ImportReport report = import_into(again, folder_ / "out");
   EXPECT_TRUE(report.rejected.empty());
@@ -66,7 +66,7 @@ TEST_F(ExportTest, NpyReturnsToTheSameClips) {
 }
 
 TEST_F(ExportTest, BvhReturnsWithinTwoCentimetres) {
-  exchange::export_clips(database_, ids_, folder_ / "out", exchange::ExportFormat::bvh);
+  exchange::export_clips(database_, ids_, folder_ / "out", exchange::ExportOptions{".bvh", {}});
   db::Database again(folder_ / "again", db::OpenMode::create);
   const exchange::ImportReport report = import_into(again, folder_ / "out");
   EXPECT_TRUE(report.rejected.empty());
@@ -83,14 +83,14 @@ TEST_F(ExportTest, BvhReturnsWithinTwoCentimetres) {
 }
 
 TEST_F(ExportTest, WritesTheChosenClipsAndMixesNothingUp) {
-  exchange::export_clips(database_, {ids_[1]}, folder_ / "out", exchange::ExportFormat::npy);
+  exchange::export_clips(database_, {ids_[1]}, folder_ / "out", exchange::ExportOptions{});
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / "out"), {}), 2);
   EXPECT_NE(error_of([&] {
-              exchange::export_clips(database_, ids_, folder_ / "out", exchange::ExportFormat::npy);
+              exchange::export_clips(database_, ids_, folder_ / "out", exchange::ExportOptions{});
             }).find("is not empty"),
             std::string::npos);
   EXPECT_THROW(exchange::export_clips(database_, {ids_.back() + 1}, folder_ / "other",
-                                      exchange::ExportFormat::npy),
+                                      exchange::ExportOptions{}),
                Error);
 }
 
