@@ -15,7 +15,6 @@ namespace remomask::formats {
 
 namespace {
 
-constexpr uint64_t kMaxArrayBytes = uint64_t{1} << 29, kMaxUnpackedBytes = uint64_t{1} << 30;
 constexpr size_t kMaxNpzEntries = 10'000;
 constexpr size_t kReadBlock = size_t{1} << 16;
 
@@ -36,7 +35,8 @@ ZipReader open_zip(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw FileError(path, 0, "is not a readable file");
   ZipReader zip(archive_read_new());
   if (!zip) throw FileError(path, 0, "there is not enough memory to read it");
-  archive_read_support_format_zip(zip.get());
+  // By the directory at the end of the file, so that a truncated file is noticed.
+  archive_read_support_format_zip_seekable(zip.get());
   if (archive_read_open_filename(zip.get(), path.c_str(), kReadBlock) != ARCHIVE_OK) {
     refuse_zip(zip, path);
   }
@@ -85,10 +85,11 @@ const NpyArray* NpzArrays::find_any(const std::vector<std::string>& wanted) cons
   return nullptr;
 }
 
-NpzArrays read_npz(const std::string& path, const std::vector<std::string>& wanted) {
+NpzArrays read_npz(const std::string& path, const std::vector<std::string>& wanted,
+                   const NpzLimits& limits) {
   const ZipReader zip = open_zip(path);
   NpzArrays result;
-  uint64_t left = kMaxUnpackedBytes;
+  uint64_t left = limits.file_bytes;
   struct archive_entry* entry = nullptr;
   int code = ARCHIVE_OK;
   while ((code = archive_read_next_header(zip.get(), &entry)) == ARCHIVE_OK ||
@@ -101,7 +102,7 @@ NpzArrays read_npz(const std::string& path, const std::vector<std::string>& want
     result.names.push_back(name);
     const bool is_wanted = std::find(wanted.begin(), wanted.end(), name) != wanted.end();
     if (!is_wanted || result.arrays.contains(name)) continue;
-    const std::string content = unpack_entry(zip, path, std::min(left, kMaxArrayBytes));
+    const std::string content = unpack_entry(zip, path, std::min(left, limits.array_bytes));
     left -= content.size();
     result.arrays.emplace(name, parse_npy(content, path + ": " + name));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,9 +19,16 @@ struct NpzArrays {
   const NpyArray* find_any(const std::vector<std::string>& wanted) const;
 };
 
-/// Reads the arrays called `wanted`; others are neither unpacked nor looked at. What is unpacked is
-/// limited to 512 MiB an array and 1 GiB a file, whatever the file says. Throws FileError for a
-/// damaged file, and for an array that is wanted and cannot be read.
-NpzArrays read_npz(const std::string& path, const std::vector<std::string>& wanted);
+/// What is unpacked at most, whatever the file says.
+struct NpzLimits {
+  uint64_t array_bytes = uint64_t{1} << 29;
+  uint64_t file_bytes = uint64_t{1} << 30;
+};
+
+/// Reads the arrays called `wanted`; others are neither unpacked nor looked at. Throws FileError
+/// for a damaged file, for one that unpacks to more than the limits, and for an array that is
+/// wanted and cannot be read.
+NpzArrays read_npz(const std::string& path, const std::vector<std::string>& wanted,
+                   const NpzLimits& limits = {});
 
 }  // namespace remomask::formats

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/bounded_file.h"
 #include "base/hash.h"
 #include "remomask/error.h"
 
@@ -30,6 +31,16 @@ class FileTest : public ::testing::Test {
   }
   fs::path folder_;
 };
+
+TEST_F(FileTest, ReadsNoMoreThanTheLimit) {
+  const std::string content(10'000, 'x');
+  write_file_atomically(path("a"), content);
+  EXPECT_EQ(read_bounded_file(path("a"), 10'000), content);
+  EXPECT_THROW(read_bounded_file(path("a"), 9'999), FileError);
+  EXPECT_THROW(read_bounded_file("/dev/zero", 10'000'000), FileError);
+  EXPECT_EQ(read_bounded_file("/dev/null", 0), "");
+  EXPECT_FALSE(read_bounded_file("/proc/self/status", 1'000'000).empty());
+}
 
 TEST_F(FileTest, WritesAndReadsBackEveryByte) {
   std::string content;

@@ -154,23 +154,86 @@ TEST(HumanmlFolder, OtherShapesAndOptionsAreRefused) {
 TEST(HumanmlTexts, WrongLinesAreNamed) {
   TestFolder folder;
   const std::string path = folder / "t.txt";
+  std::vector<std::string> warnings;
   const auto error_with = [&](const std::string& content) {
     write_file_atomically(path, content);
-    return error_of([&] { exchange::read_humanml_texts(path); });
+    return error_of([&] { exchange::read_humanml_texts(path, warnings); });
   };
   EXPECT_EQ(error_with("a#b#0.0#0.0\n\n c #d#1#2\n"), "");
-  EXPECT_NE(error_with("a#b#0.0#0.0\na#b#x#2\n").find("t.txt:2: 'x' is not a time"),
-            std::string::npos);
+  EXPECT_NE(error_with("\na#b#x#2\n").find("t.txt:2: 'x' is not a time"), std::string::npos);
+  EXPECT_NE(error_with("a#b#0,5#2\n").find("like 2.5"), std::string::npos);
   EXPECT_NE(error_with("a#b#2#1\n").find("ends before it begins"), std::string::npos);
   EXPECT_NE(error_with("a#b#-1#1\n").find("not a time"), std::string::npos);
   EXPECT_NE(error_with("#b#0#1\n").find("not of the form"), std::string::npos);
   const auto parts = [&] {
     write_file_atomically(path, "one#t#0#0\r\ntwo#t#1.5#2\r\nthree#t#nan#nan\r\n");
-    return exchange::read_humanml_texts(path);
+    return exchange::read_humanml_texts(path, warnings);
   }();
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_EQ(parts[0].captions, (std::vector<std::string>{"one", "three"}));
   EXPECT_EQ(parts[1].from, 1.5);
+  EXPECT_TRUE(warnings.empty());
+}
+
+TEST(HumanmlTexts, ABadLineCostsOneLine) {
+  TestFolder folder;
+  const std::string path = folder / "t.txt";
+  write_file_atomically(path, "one#t#0#0\nno fields\ntwo#t#2#1\nthree#t#0#0\n");
+  std::vector<std::string> warnings;
+  const auto parts = exchange::read_humanml_texts(path, warnings);
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_EQ(parts[0].captions, (std::vector<std::string>{"one", "three"}));
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("t.txt:2: is not of the form"), std::string::npos);
+  EXPECT_NE(warnings[1].find("t.txt:3: the part ends before"), std::string::npos);
+}
+
+TEST(HumanmlTexts, FieldsAreCountedFromTheRight) {
+  TestFolder folder;
+  const std::string path = folder / "t.txt";
+  const auto caption_of = [&](const std::string& content) {
+    write_file_atomically(path, content);
+    std::vector<std::string> warnings;
+    const auto parts = exchange::read_humanml_texts(path, warnings);
+    EXPECT_TRUE(warnings.empty());
+    return parts[0].captions[0];
+  };
+  EXPECT_EQ(caption_of("do exercise #1 of the list#do/VERB exercise/NOUN#0.0#0.0\n"),
+            "do exercise #1 of the list");
+  EXPECT_EQ(caption_of("exercise #1#exercise/NOUN #/SYM 1/NUM#0.0#0.0\n"), "exercise #1");
+  EXPECT_EQ(caption_of("exercise #1#exercise/NOUN #1/NUM#nan#nan\n"), "exercise #1");
+  EXPECT_EQ(caption_of("# one # two#tokens#1#2\n"), "# one # two");
+  EXPECT_EQ(caption_of("a walk##0#0\n"), "a walk");
+  EXPECT_EQ(caption_of("\xEF\xBB\xBF"
+                       "a walk#a/DET#0#0\r\n"),
+            "a walk");
+  std::string utf16 = "\xFF\xFE";
+  for (const char c : std::string("a walk#t#0#0\r\n")) utf16 += {c, '\0'};
+  EXPECT_EQ(caption_of(utf16), "a walk");
+}
+
+TEST(HumanmlFolder, SplitFilesOfWindowsAndRepeatedIds) {
+  TestFolder folder;
+  make_layout(folder);
+  write_joints(folder / "set/new_joints/000001.npy", walking_motion(30, 1));
+  write_file_atomically(folder / "set/texts/000001.txt",
+                        "\xEF\xBB\xBF"
+                        "a man walks#a/DET#0#0\r\n");
+  write_file_atomically(folder / "set/train.txt",
+                        "\xEF\xBB\xBF"
+                        "000001\t\r\n000001 \r\n");
+  write_file_atomically(folder / "set/val.txt", "");
+  write_file_atomically(folder / "set/test.txt", "");
+  exchange::ImportOptions options;
+  options.folder = folder / "set";
+  db::Database database(folder / "d", db::OpenMode::create);
+  const exchange::ImportReport report = exchange::import_folder(database, options);
+  const db::Clip clip = database.clip(*database.find_name("000001"));
+  EXPECT_EQ(clip.split, "train");
+  EXPECT_EQ(clip.captions, (std::vector<std::string>{"a man walks"}));
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_NE(report.warnings[0].find("train.txt:2: clip '000001' is listed in line 1 already"),
+            std::string::npos);
 }
 
 }  // namespace

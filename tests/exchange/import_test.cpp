@@ -173,11 +173,13 @@ TEST(Import, MissingAndExtraCaptionsAreNamed) {
   EXPECT_TRUE(clip.captions.empty());
 }
 
-TEST(Import, MalformedCaptionsStopWithTheLine) {
+TEST(Import, AMalformedLineOfCaptionsCostsThatLine) {
   TestFolder folder;
   const exchange::ImportOptions options = make_walks(folder, 1, ".npy");
   db::Database database(folder / "d", db::OpenMode::create);
   const std::string good = caption_line("walk_1000");
+  const std::string deep = R"({"clip": "a", "labels": {"x": )" + std::string(100'000, '[') +
+                           std::string(100'000, ']') + "}}";
   const std::pair<const char*, const char*> cases[] = {
       {"{\"clip\": \"a\",", "is not JSON"},
       {"[1]", "is not of the form"},
@@ -189,14 +191,78 @@ TEST(Import, MalformedCaptionsStopWithTheLine) {
       {"{\"clip\": \"a\", \"labels\": []}", "JSON object"},
       {"{\"clip\": \"a\", \"split\": \"dev\"}", "unknown split 'dev'"},
       {"{\"clip\": \"walk_1000\"}", "was given in line 1 already"},
-      {"{\"clip\": \"\xff\"}", "is not JSON"}};
+      {"{\"clip\": \"\xff\"}", "is not JSON"},
+      {deep.c_str(), "nested too deeply"}};
   for (const auto& [line, message] : cases) {
     write_file_atomically(folder / "walks.jsonl", good + line);
-    const std::string error = error_of([&] { exchange::import_folder(database, options); });
-    EXPECT_NE(error.find("walks.jsonl:2: "), std::string::npos) << error;
-    EXPECT_NE(error.find(message), std::string::npos) << error;
+    db::Database fresh(folder / "fresh", db::OpenMode::create);
+    const exchange::ImportReport report = exchange::import_folder(fresh, options);
+    EXPECT_EQ(report.files_stored, 1) << line;
+    EXPECT_TRUE(any_contains(report.warnings, "walks.jsonl:2: ")) << line;
+    EXPECT_TRUE(any_contains(report.warnings, message)) << line;
+    EXPECT_EQ(fresh.clip(*fresh.find_name("walk_1000")).captions.size(), 2u) << line;
+    std::filesystem::remove(folder / "fresh");
   }
+  // Where no line is of use, the file is another one.
+  write_file_atomically(folder / "walks.jsonl", "clip,caption\na,b\n");
+  const std::string error = error_of([&] { exchange::import_folder(database, options); });
+  EXPECT_NE(error.find("walks.jsonl:1: is not JSON"), std::string::npos) << error;
   EXPECT_EQ(database.clip_count(), 0);
+}
+
+TEST(Import, CaptionsOfWindowsAreRead) {
+  TestFolder folder;
+  const exchange::ImportOptions options = make_walks(folder, 1, ".npy");
+  std::string line = caption_line("walk_1000");
+  line.insert(line.size() - 1, "\r");
+  write_file_atomically(folder / "walks.jsonl", "\xEF\xBB\xBF" + line);
+  db::Database database(folder / "d", db::OpenMode::create);
+  EXPECT_TRUE(exchange::import_folder(database, options).warnings.empty());
+  EXPECT_EQ(database.clip(*database.find_name("walk_1000")).split, "train");
+}
+
+TEST(Import, OddFilesAreReadWithAWarning) {
+  TestFolder folder;
+  const exchange::ImportOptions options = make_walks(folder, 1, ".bvh");
+  const std::string path = folder / "walks/deeper/walk_1000.bvh";
+  std::string text = read_file(path);
+  text.replace(text.find("Frames: 24"), 10, "Frames: 99");
+  write_file_atomically(path, text);
+  db::Database database(folder / "d", db::OpenMode::create);
+  const exchange::ImportReport report = exchange::import_folder(database, options);
+  EXPECT_EQ(report.files_stored, 1);
+  EXPECT_TRUE(any_contains(report.warnings, "deeper/walk_1000.bvh:"));
+  EXPECT_TRUE(any_contains(report.warnings, "Frames: says 99, the file holds 24"));
+}
+
+TEST(Import, ARateOfTheUserOrOfTheLabelsMendsThatOfTheFile) {
+  TestFolder folder;
+  exchange::ImportOptions options = make_walks(folder, 1, ".bvh");
+  options.min_frames = 10;
+  const std::string path = folder / "walks/deeper/walk_1000.bvh";
+  const std::string text = read_file(path);
+  const auto frames_of = [&](const std::string& frame_time, const nlohmann::json& labels) {
+    std::string changed = text;
+    const size_t at = changed.find("Frame Time: ") + 12;
+    changed.replace(at, changed.find('\n', at) - at, frame_time);
+    write_file_atomically(path, changed);
+    write_file_atomically(folder / "walks.jsonl", caption_line("walk_1000", "train", labels));
+    db::Database database(folder / "d", db::OpenMode::create);
+    const exchange::ImportReport report = exchange::import_folder(database, options);
+    const int frames =
+        report.files_stored == 1 ? database.clip(*database.find_name("walk_1000")).frames : -1;
+    const bool warned = any_contains(report.warnings, "frames a second of its labels");
+    std::filesystem::remove(folder / "d");
+    return std::pair(frames, warned);
+  };
+  const nlohmann::json none = nlohmann::json::object();
+  EXPECT_EQ(frames_of("0.05", none), std::pair(24, false));
+  EXPECT_EQ(frames_of("0.05", {{"fps", 20.01}}), std::pair(24, false));  // rounded
+  EXPECT_EQ(frames_of("0.05", {{"fps", 40}}), std::pair(12, true));
+  EXPECT_EQ(frames_of("0", {{"fps", 40}}), std::pair(12, false));
+  EXPECT_EQ(frames_of("0", none), std::pair(-1, false));
+  options.fps = 40;
+  EXPECT_EQ(frames_of("0", {{"fps", 20}}), std::pair(12, false));
 }
 
 TEST(Import, RejectedFilesAreNamedWithTheirReason) {

@@ -46,6 +46,21 @@ TEST(ParseScript, ErrorsSayFileAndLine) {
   EXPECT_NE(message("nan run").find("s.txt:1: "), std::string::npos);
   EXPECT_NE(message("4 \n").find("no sentence"), std::string::npos);
   EXPECT_NE(message("# nothing\n\n").find("s.txt: "), std::string::npos);
+  for (const char* seconds : {"2,5", "3s", "2.5sec", "1.2.3"}) {
+    const std::string text = message(std::string("walk\n") + seconds + " someone waves\n");
+    EXPECT_NE(text.find("s.txt:2: "), std::string::npos) << seconds;
+    EXPECT_NE(text.find("like 2.5"), std::string::npos) << seconds;
+  }
+}
+
+TEST(ParseScript, FilesOfWindowsPrograms) {
+  const auto lines = parse_script(
+      "\xEF\xBB\xBF"
+      "2 a person walks forward\r\n",
+      "s.txt");
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].seconds, 2);
+  EXPECT_EQ(lines[0].sentence, "a person walks forward");
 }
 
 std::vector<pipeline::ScriptSegment> three_segments() {
