@@ -50,6 +50,9 @@ enum class JointNames { mixamo, unreal, unity, vrm, godot, smpl };
 
 enum class LengthUnit { centimetres, metres };
 
+/// Keys of an .npz file: positions, rotations and contacts, or those of AMASS.
+enum class NpzLayout { motion, amass };
+
 /// How a motion is written. A choice that a format has no use for is an Error.
 struct MotionWriteOptions {
   std::optional<JointNames> names;  ///< unset: those of the format, else mixamo
@@ -62,6 +65,8 @@ struct MotionWriteOptions {
   bool loop = false;
   bool root_motion = false;      ///< the heading lies on the joint "Root", too, not on the hips
   bool own_proportions = false;  ///< as in RotationOptions
+  NpzLayout npz = NpzLayout::motion;
+  bool features = false;  ///< .npy: the 263 features of HumanML3D instead of positions
 };
 
 /// What was closed by MotionWriteOptions::loop.
@@ -78,8 +83,8 @@ struct WrittenMotion {
   std::optional<LoopGap> loop;
 };
 
-/// Writes .bvh (joint rotations over a T-pose) or .npy (float32 T x 22 x 3, metres), chosen by
-/// extension. The file is replaced atomically, and an old sidecar is removed.
+/// Writes .bvh (joint rotations over a T-pose), .glb (the same with a body), .vrma, .fbx, .npz or
+/// .npy (float32 T x 22 x 3, metres), chosen by extension. The file is replaced atomically, and an old sidecar is removed.
 REMOMASK_API WrittenMotion save_motion(const std::string& path, const Motion& motion,
                                        const MotionWriteOptions& options = {});
 
