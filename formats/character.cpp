@@ -41,24 +41,24 @@ JointRotations without_root_joint(const JointRotations& motion) {
 }
 
 rig::SourceMotion put_onto(const rig::SourceMotion& rig, const WritingJob& job,
-                           const CharacterChoice& choice, WrittenMotion& written,
-                           std::vector<std::string>& warnings) {
-  MotionWriteOptions options = job.options;
-  options.root_motion = false;
-  const rig::RotationsToWrite ready = rig::rotations_to_write(job.motion, options);
-  written = ready.written;
+                           WrittenMotion& written) {
+  const std::string& path = job.options.character;
+  const rig::RotationsToWrite ready = rig::rotations_to_write(job.motion, job.options);
+  written.frames = ready.written.frames;
+  written.fps = ready.written.fps;
+  written.loop = ready.written.loop;
   const JointRotations motion = without_root_joint(ready.motion);
   const rig::SkeletonView view = rig::view_of(rig);
   const rig::ChosenSkeletonMap chosen =
-      rig::choose_skeleton_map(view, choice.skeleton_map, choice.path);
-  warnings.insert(warnings.end(), chosen.warnings.begin(), chosen.warnings.end());
+      rig::choose_skeleton_map(view, job.options.character_map, path);
+  written.warnings.insert(written.warnings.end(), chosen.warnings.begin(), chosen.warnings.end());
   try {
     return rig::retarget(motion, rig, rig::body_joints(chosen.map, view),
                          foot_contacts(rig::joint_positions(motion)));
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
-    throw FileError(choice.path, 0, error.what());
+    throw FileError(path, 0, error.what());
   }
 }
 
@@ -76,27 +76,27 @@ rig::SourceMotion read_rig(const std::string& path, std::vector<std::string>& wa
   throw FileError(path, 0, "is no character; one is read from .glb, .gltf, .vrm, .fbx or .bvh");
 }
 
-WrittenFile write_on_character(const WritingJob& job, const CharacterChoice& choice,
-                               const std::string& extension, std::vector<std::string>& warnings) {
-  if (extension != ".glb" && extension != ".bvh") {
-    throw Error("a motion on a character is written as .glb or .bvh, not as \"" + extension + "\"");
-  }
+WrittenFile write_on_character(const WritingJob& job, std::string_view extension) {
+  const std::string& path = job.options.character;
   WrittenFile file;
-  if (extension == ".glb") {
-    if (!is_gltf(lower_extension(choice.path))) {
-      throw Error("only a .glb, .gltf or .vrm character can be written as .glb; convert \"" +
-                  choice.path + "\" to .glb first, or write .bvh");
-    }
-    GltfDocument document(choice.path);
-    GltfRig rig = read_gltf_rig(document);
-    rig.motion = put_onto(rig.motion, job, choice, file.written, warnings);
-    nlohmann::json extras = nlohmann::json::object();
-    if (job.sidecar) extras["remomask"] = *job.sidecar;
-    file.bytes = character_glb(document, rig, job.name, extras);
+  std::vector<std::string>& warnings = file.written.warnings;
+  if (extension != ".glb") {
+    const rig::SourceMotion rig = read_rig(path, warnings);
+    file.bytes = format_bvh(source_to_bvh(put_onto(rig, job, file.written)));
     return file;
   }
-  const rig::SourceMotion rig = read_rig(choice.path, warnings);
-  file.bytes = format_bvh(source_to_bvh(put_onto(rig, job, choice, file.written, warnings)));
+  if (!is_gltf(lower_extension(path))) {
+    throw FileError(path, 0,
+                    "has no body that a .glb could keep; convert the character to .glb, for "
+                    "instance in Blender, or write .bvh");
+  }
+  const GltfDocument document(path);
+  GltfRig rig = read_gltf_rig(document);
+  warnings = rig.warnings;
+  rig.motion = put_onto(rig.motion, job, file.written);
+  nlohmann::json extras = nlohmann::json::object();
+  if (job.sidecar) extras["remomask"] = *job.sidecar;
+  file.bytes = character_glb(document, rig, job.name, extras);
   return file;
 }
 

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "formats/animation_formats.h"
 #include "formats/bvh_motion.h"
+#include "formats/character.h"
 #include "formats/npy.h"
 #include "motion/canonical.h"
 #include "remomask/error.h"
@@ -88,6 +89,11 @@ void check_write_options(const MotionFormat& format, const MotionWriteOptions& o
   refuse(options.loop, format.rotations, "--loop");
   refuse(options.root_motion, format.rotations, "--root-motion");
   refuse(options.own_proportions, format.rotations, "--own-proportions");
+  const bool figure = !options.character.empty();
+  refuse(figure, format.extension == ".bvh" || format.extension == ".glb", "--character");
+  refuse(figure && options.names, false, "--names together with --character");
+  refuse(figure && options.units, false, "--units together with --character");
+  refuse(figure && options.root_motion, false, "--root-motion together with --character");
   refuse(options.npz != NpzLayout::motion, format.npz, "--npz amass");
   refuse(options.features, format.features, "--features");
   if (options.fps && !(*options.fps >= 1 && *options.fps <= 240)) {
