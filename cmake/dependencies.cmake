@@ -9,6 +9,8 @@ find_package(fmt REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(ARCHIVE REQUIRED IMPORTED_TARGET libarchive)
+pkg_check_modules(TINYGLTF REQUIRED IMPORTED_TARGET tinygltf)
+pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 
 # Debian ships FAISS as a static library without CMake files; BLAS and LAPACK

@@ -6,6 +6,8 @@
 #include "formats/acclaim.h"
 #include "formats/amass.h"
 #include "formats/bvh.h"
+#include "formats/fbx_reader.h"
+#include "formats/gltf_reader.h"
 #include "formats/joint_array.h"
 #include "formats/mapped_kinematics.h"
 #include "formats/motion_reading.h"
@@ -63,11 +65,30 @@ RawMotion read_amc_motion(const std::string& path, const MotionFileOptions& opti
   return raw;
 }
 
+RawMotion read_gltf_motion(const std::string& path, const MotionFileOptions& options) {
+  std::vector<std::string> warnings;
+  RawMotion raw =
+      load_source_motion(read_gltf(path, {options.animation}, &warnings), path, options);
+  raw.warnings.insert(raw.warnings.begin(), warnings.begin(), warnings.end());
+  return raw;
+}
+
+RawMotion read_fbx_motion(const std::string& path, const MotionFileOptions& options) {
+  std::vector<std::string> warnings;
+  RawMotion raw = load_source_motion(read_fbx(path, {options.animation}, &warnings), path, options);
+  raw.warnings.insert(raw.warnings.begin(), warnings.begin(), warnings.end());
+  return raw;
+}
+
 using MotionReader = RawMotion (*)(const std::string& path, const MotionFileOptions& options);
 
 /// Null for a file type that is not read.
 MotionReader reader_of(const std::string& extension) {
   if (extension == ".bvh") return read_bvh_motion;
+  for (const char* gltf : {".glb", ".gltf", ".vrm", ".vrma"}) {
+    if (extension == gltf) return read_gltf_motion;
+  }
+  if (extension == ".fbx") return read_fbx_motion;
   if (extension == ".npy") return read_npy_motion;
   if (extension == ".npz") return read_npz_file;
   if (extension == ".amc") return read_amc_motion;

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "formats/animation_formats.h"
 #include "formats/bvh_motion.h"
+#include "formats/character.h"
 #include "formats/npy.h"
 #include "motion/canonical.h"
 #include "remomask/error.h"
@@ -32,6 +34,7 @@ WrittenFile write_npy(const WritingJob& job) {
   WrittenMotion written;
   written.frames = motion.frames;
   written.fps = fps;
+  if (job.options.features) return {features_bytes(motion), written};
   return {format_npy({{static_cast<size_t>(motion.frames), kWrittenJoints, 3}, motion.positions}),
           written};
 }
@@ -39,12 +42,17 @@ WrittenFile write_npy(const WritingJob& job) {
 }  // namespace
 
 const std::vector<MotionFormat>& written_formats() {
-  static const std::vector<MotionFormat> formats = {{.extension = ".bvh", .write = write_bvh},
-                                                    {.extension = ".npy",
-                                                     .rotations = false,
-                                                     .names = false,
-                                                     .units = false,
-                                                     .write = write_npy}};
+  static const std::vector<MotionFormat> formats = [] {
+    std::vector<MotionFormat> all = {{.extension = ".bvh", .write = write_bvh},
+                                     {.extension = ".npy",
+                                      .rotations = false,
+                                      .names = false,
+                                      .units = false,
+                                      .features = true,
+                                      .write = write_npy}};
+    all.insert(all.end(), animation_formats().begin(), animation_formats().end());
+    return all;
+  }();
   return formats;
 }
 
@@ -81,6 +89,13 @@ void check_write_options(const MotionFormat& format, const MotionWriteOptions& o
   refuse(options.loop, format.rotations, "--loop");
   refuse(options.root_motion, format.rotations, "--root-motion");
   refuse(options.own_proportions, format.rotations, "--own-proportions");
+  const bool figure = !options.character.empty();
+  refuse(figure, format.extension == ".bvh" || format.extension == ".glb", "--character");
+  refuse(figure && options.names, false, "--names together with --character");
+  refuse(figure && options.units, false, "--units together with --character");
+  refuse(figure && options.root_motion, false, "--root-motion together with --character");
+  refuse(options.npz != NpzLayout::motion, format.npz, "--npz amass");
+  refuse(options.features, format.features, "--features");
   if (options.fps && !(*options.fps >= 1 && *options.fps <= 240)) {
     throw Error(
         fmt::format("a motion is written at 1 to 240 frames a second, not at {:g}", *options.fps));
@@ -101,7 +116,8 @@ WrittenMotion write_motion(const std::string& path, const Motion& motion,
   }
   const MotionFormat& format = written_format(path);
   check_write_options(format, options);
-  const WrittenFile file = format.write({motion, options, sidecar});
+  const WrittenFile file =
+      format.write({motion, options, sidecar, std::filesystem::path(path).stem().string()});
   const std::string sidecar_path = path + ".json";
   std::error_code ignored;
   std::filesystem::remove(sidecar_path, ignored);

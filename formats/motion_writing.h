@@ -14,6 +14,7 @@ struct WritingJob {
   const Motion& motion;
   const MotionWriteOptions& options;
   const nlohmann::json* sidecar = nullptr;  ///< a JSON object; null: none
+  std::string name = {};                    ///< of the animation in a file that names it
 };
 
 /// The bytes of a file, and what save_motion() says about it.
@@ -27,6 +28,7 @@ struct MotionFormat {
   std::string_view extension;  ///< in lower case, with its dot
   bool rotations = true;       ///< false: only --fps has a meaning
   bool names = true, units = true;
+  bool npz = false, features = false;
   WrittenFile (*write)(const WritingJob& job) = nullptr;
 };
 
@@ -34,7 +36,7 @@ const std::vector<MotionFormat>& written_formats();
 /// The format of a path's extension. Throws FileError for another one; the message names those
 /// that there are.
 const MotionFormat& written_format(const std::string& path);
-/// ".bvh or .npy"
+/// ".bvh, .npy or .glb"
 std::string written_extensions();
 /// Throws Error for a choice that the format has no use for, and for a frame rate out of range.
 void check_write_options(const MotionFormat& format, const MotionWriteOptions& options);

@@ -37,7 +37,9 @@ constexpr UnreadFormat kUnreadFormats[] = {
 
 }  // namespace
 
-std::string readable_extensions() { return ".bvh, .amc (with its .asf), .npy and .npz"; }
+std::string readable_extensions() {
+  return ".bvh, .glb, .gltf, .vrma, .fbx, .amc (with its .asf), .npy and .npz";
+}
 
 std::string why_unread(const std::string& extension) {
   for (const UnreadFormat& format : kUnreadFormats) {

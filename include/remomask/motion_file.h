@@ -19,6 +19,8 @@ struct MotionFileOptions {
   std::optional<double> fps;
   /// Name of the root joint of the skeleton to read, for files that hold several.
   std::string root;
+  /// Name or number (from 0) of the animation of a .glb, .gltf or .fbx file; empty: the first.
+  std::string animation;
   /// false: place, heading, floor and size of the body stay as in the file; only unit, up axis
   /// and frame rate change. What is in metres, Y up and at 20 fps is then read as it is.
   bool canonical = true;
@@ -39,8 +41,8 @@ struct LoadedMotion {
   std::vector<std::string> warnings;
 };
 
-/// Reads a motion file by its extension: .bvh, .amc with its .asf, .npy and .npz (joints, features
-/// or AMASS poses). Throws FileError with the line and a remedy.
+/// Reads a motion file by its extension: .bvh, .glb, .gltf, .vrm, .vrma, .fbx, .amc with its .asf,
+/// .npy and .npz (joints, features or AMASS poses). Throws FileError with the line and a remedy.
 REMOMASK_API LoadedMotion load_motion(const std::string& path,
                                       const MotionFileOptions& options = {});
 
@@ -49,6 +51,9 @@ REMOMASK_API LoadedMotion load_motion(const std::string& path,
 enum class JointNames { mixamo, unreal, unity, vrm, godot, smpl };
 
 enum class LengthUnit { centimetres, metres };
+
+/// Keys of an .npz file: positions, rotations and contacts, or those of AMASS.
+enum class NpzLayout { motion, amass };
 
 /// How a motion is written. A choice that a format has no use for is an Error.
 struct MotionWriteOptions {
@@ -62,6 +67,12 @@ struct MotionWriteOptions {
   bool loop = false;
   bool root_motion = false;      ///< the heading lies on the joint "Root", too, not on the hips
   bool own_proportions = false;  ///< as in RotationOptions
+  NpzLayout npz = NpzLayout::motion;
+  bool features = false;  ///< .npy: the 263 features of HumanML3D instead of positions
+  /// A figure of the user's own (.glb, .gltf, .vrm, .bvh, .fbx) that the motion is put onto: a .glb
+  /// keeps its body, other figures give a .bvh of their skeleton. Empty: none.
+  std::string character;
+  std::string character_map;  ///< skeleton map of the figure, as MotionFileOptions has it
 };
 
 /// What was closed by MotionWriteOptions::loop.
@@ -76,10 +87,12 @@ struct WrittenMotion {
   int frames = 0;
   double fps = 0;
   std::optional<LoopGap> loop;
+  std::vector<std::string> warnings;  ///< about the figure that the motion was put onto
 };
 
-/// Writes .bvh (joint rotations over a T-pose) or .npy (float32 T x 22 x 3, metres), chosen by
-/// extension. The file is replaced atomically, and an old sidecar is removed.
+/// Writes .bvh (joint rotations over a T-pose), .glb (the same with a body), .vrma, .fbx, .npz or
+/// .npy (float32 T x 22 x 3, metres), chosen by extension. The file is replaced atomically, and an
+/// old sidecar is removed.
 REMOMASK_API WrittenMotion save_motion(const std::string& path, const Motion& motion,
                                        const MotionWriteOptions& options = {});
 
