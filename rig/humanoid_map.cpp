@@ -159,11 +159,12 @@ class MapWriter {
   /// A collar bone that begins in the middle of the body is ours from a third on.
   MappedPoint collar(const LimbJoints& arm) const {
     const int shoulder = arm[kShoulder];
-    const Vec3 across = rest_[at(body_.arms[0][kShoulder])] - rest_[at(body_.arms[1][kShoulder])];
+    const std::vector<Vec3>& pose = pose_of_body().positions;
+    const Vec3 left = pose[at(body_.arms[0][kShoulder])],
+               right = pose[at(body_.arms[1][kShoulder])];
+    const Vec3 across = left - right;
     const auto lateral = [&](int joint) {
-      const Vec3 middle =
-          (rest_[at(body_.arms[0][kShoulder])] + rest_[at(body_.arms[1][kShoulder])]) / 2;
-      return std::abs((rest_[at(joint)] - middle).dot(across.normalized())) /
+      return std::abs((pose[at(joint)] - (left + right) / 2).dot(across.normalized())) /
              std::max(1e-9, across.norm() / 2);
     };
     if (arm[kCollar] >= 0) {

@@ -112,7 +112,7 @@ struct ChainReader {
 int outward_order(BodyPart part) { return static_cast<int>(part); }
 
 /// Reads the limb along every path that ends in one of its joints, and takes the cheapest. Ties
-/// come from toes side by side: the middle one continues the foot.
+/// come from toes side by side: the first by name is the big one, whatever the order of the file.
 LimbReading read_limb(const SkeletonView& skeleton, const std::vector<NameReading>& names,
                       Side side, SuitabilityOf suitability, const LimbJoints& needed) {
   const auto belongs = [&](int joint) {
@@ -143,7 +143,14 @@ LimbReading read_limb(const SkeletonView& skeleton, const std::vector<NameReadin
     cheapest.push_back(reading);
   }
   LimbReading best;
-  if (!cheapest.empty()) best = cheapest[(cheapest.size() - 1) / 2];
+  for (const LimbReading& reading : cheapest) {
+    const auto last_name = [&](const LimbReading& limb) {
+      const int last = *std::find_if(limb.joints.rbegin(), limb.joints.rend(),
+                                     [](int joint) { return joint >= 0; });
+      return skeleton.names[static_cast<size_t>(last)];
+    };
+    if (best.cost == kNever || last_name(reading) < last_name(best)) best = reading;
+  }
   // Joints that do not hang in a chain (an exporter's flat list) are in the order of their names.
   if (best.cost >= 20 && members.size() > 1 && members.size() <= 16) {
     std::stable_sort(members.begin(), members.end(), [&](int a, int b) {

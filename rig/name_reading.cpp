@@ -89,14 +89,18 @@ std::vector<std::string> take_apart(const std::string& word) {
   return parts;
 }
 
-/// "LUArm" and "LFArm" give "lu" and "lf": a side and the upper or fore part.
-void expand_initials(std::vector<std::string>& words) {
+/// "LUArm" and "LFArm" give "lu" and "lf": a side and the upper or fore part. (In "lf_arm", lf is
+/// the side alone.)
+void expand_initials(const std::string& name, std::vector<std::string>& words) {
   static const std::map<std::string, std::pair<std::string, std::string>> kInitials = {
       {"lu", {"left", "upper"}}, {"ru", {"right", "upper"}}, {"lf", {"left", "fore"}},
       {"rf", {"right", "fore"}}, {"ll", {"left", "lower"}},  {"rl", {"right", "lower"}}};
   for (size_t i = 0; i + 1 < words.size(); ++i) {
     const auto found = kInitials.find(words[i]);
     if (found == kInitials.end() || (words[i + 1] != "arm" && words[i + 1] != "leg")) continue;
+    std::string together = words[i] + words[i + 1];
+    for (size_t c = 0; c < 3; ++c) together[c] = static_cast<char>(together[c] - 'a' + 'A');
+    if (name.find(together) == std::string::npos) continue;
     words[i] = found->second.second;
     words.insert(words.begin() + static_cast<long>(i), found->second.first);
   }
@@ -214,7 +218,7 @@ std::vector<std::string> words_of_name(std::string_view name) {
   for (const std::string& word : split_name(translate(std::string(name)))) {
     for (std::string& part : take_apart(word)) words.push_back(std::move(part));
   }
-  expand_initials(words);
+  expand_initials(std::string(name), words);
   return words;
 }
 

@@ -18,7 +18,7 @@ std::unordered_map<std::string_view, Word> make_dictionary() {
   const auto add_kind = [&](WordKind kind, std::initializer_list<std::string_view> names) {
     add({kind, BodyPart::none, Side::none}, names);
   };
-  add({WordKind::side, BodyPart::none, Side::left}, {"left", "l", "lft", "lt"});
+  add({WordKind::side, BodyPart::none, Side::left}, {"left", "l", "lft", "lt", "lf"});
   add({WordKind::side, BodyPart::none, Side::right}, {"right", "r", "rgt", "rt"});
 
   add_part(BodyPart::root, {"root", "center", "centre", "cog", "hub"});

@@ -52,8 +52,11 @@ RigNames humanoid(const std::string& program, bool capitals, const std::string& 
   const auto n = [&](const char* upper) {
     std::string name = upper;
     if (!capitals) {
-      name[0] = static_cast<char>(name[0] + 32);
-      if (name[0] == '{' + 32) name = "{left|right}" + std::string(upper).substr(12);
+      if (name[0] == '{') {
+        name = "{left|right}" + name.substr(12);
+      } else {
+        name[0] = static_cast<char>(name[0] + 32);
+      }
     }
     return prefix + name;
   };

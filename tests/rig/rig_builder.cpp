@@ -113,8 +113,9 @@ std::vector<Placed> in_reverse_order(const std::vector<Placed>& joints) {
 }  // namespace
 
 std::string sided(const std::string& pattern, int side) {
-  const size_t open = pattern.find('{'), bar = pattern.find('|'), close = pattern.find('}');
+  const size_t open = pattern.find('{');
   if (open == std::string::npos) return pattern;
+  const size_t bar = pattern.find('|', open), close = pattern.find('}', open);
   const std::string middle = side == 0 ? pattern.substr(open + 1, bar - open - 1)
                                        : pattern.substr(bar + 1, close - bar - 1);
   return pattern.substr(0, open) + middle + pattern.substr(close + 1);
