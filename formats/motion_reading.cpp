@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "formats/axis_detection.h"
+#include "formats/rest_frame.h"
 #include "motion/canonical.h"
 #include "remomask/error.h"
 
@@ -53,7 +54,17 @@ LoadedMotion finish_reading(RawMotion raw, const MotionFileOptions& options) {
   loaded.warnings = std::move(raw.warnings);
   loaded.source_fps = options.fps.value_or(raw.fps);
   loaded.source_frames = raw.positions.frames;
-  const Motion kept = without_first(raw.positions, options.skip_frames);
+  int skipped = options.skip_frames;
+  if (skipped == 0 && raw.rest_pose) {
+    skipped = count_rest_frames(raw.positions, *raw.rest_pose, loaded.source_fps);
+    if (skipped == 1) loaded.warnings.emplace_back("the first frame is a rest pose: left out");
+    if (skipped > 1) {
+      loaded.warnings.push_back(fmt::format(
+          "the first frame is a rest pose and blends into the motion: {} frames left out",
+          skipped));
+    }
+  }
+  const Motion kept = without_first(raw.positions, skipped);
   const std::optional<char> up_axis = options.up_axis ? options.up_axis : raw.up_axis;
   loaded.up_axis =
       up_axis ? *up_axis : detect_up_axis(kept, raw.rest_pose ? &*raw.rest_pose : nullptr);

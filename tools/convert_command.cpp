@@ -32,7 +32,7 @@ void register_convert(CLI::App& app, Program& program) {
   options->overwrite.add(*command);
   options->writing.add(*command, "--output-fps");
   options->writing.add_own_proportions(*command);
-  command->add_option("--skeleton-map", options->file.skeleton_map, "map name or file");
+  add_skeleton_map_option(*command, options->file.skeleton_map);
   command->add_option("--up-axis", options->up_axis, "X, Y or Z; default: detected")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
   command->add_option("--metres-per-unit", options->metres_per_unit, "default: detected")

@@ -19,6 +19,7 @@ void register_edit(CLI::App& app, Program& program) {
       "left_arm");
   command->add_option("input", options->input, "motion file (BVH, AMC, npy, npz)")->required();
   add_reading_options(*command, options->reading.fps, options->reading.root, "--input-fps");
+  add_skeleton_map_option(*command, options->reading.skeleton_map);
   command
       ->add_option("-o,--output", options->output,
                    "motion file (" + formats::written_extensions() + ")")

@@ -51,8 +51,7 @@ void register_import(CLI::App& app, Program& program) {
                       "FOLDER.jsonl or FOLDER/captions.jsonl");
   command->add_option("--source", options->import.source, "name of the data set");
   command->add_option("--licence", options->import.licence, "licence of these motions");
-  command->add_option("--skeleton-map", options->import.skeleton_map,
-                      "name of a shipped map or a map file; default: found by joint names");
+  add_skeleton_map_option(*command, options->import.skeleton_map);
   add_reading_options(*command, options->import.fps, options->import.root);
   command->add_option("--min-frames", options->import.min_frames, "shorter clips are rejected")
       ->capture_default_str();

@@ -94,7 +94,7 @@ int run(int argc, char** argv) {
   const RegisterCommand commands[] = {
       register_generate, register_edit,     register_search,  register_import, register_index,
       register_train,    register_evaluate, register_convert, register_sheet,  register_procedural,
-      register_info,     register_check,    register_db,      register_ablate,
+      register_info,     register_check,    register_db,      register_ablate, register_skeleton,
   };
   for (const RegisterCommand add : commands) add(app, program);
   try {

@@ -64,6 +64,7 @@ void register_evaluate(CLI::App& app, Program& program);
 void register_convert(CLI::App& app, Program& program);
 void register_sheet(CLI::App& app, Program& program);
 void register_procedural(CLI::App& app, Program& program);
+void register_skeleton(CLI::App& app, Program& program);
 void register_check(CLI::App& app, Program& program);
 void register_db(CLI::App& app, Program& program);
 

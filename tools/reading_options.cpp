@@ -13,6 +13,13 @@ void add_reading_options(CLI::App& command, std::optional<double>& fps, std::str
   command.add_option("--root", root, "root joint of the skeleton to read, if a file holds several");
 }
 
+void add_skeleton_map_option(CLI::App& command, std::string& map) {
+  command.add_option("--skeleton-map", map,
+                     "a file of maps (\"remomask skeleton\" writes one), which counts for the "
+                     "skeletons that it fits, or the name of a built-in map; default: found by the "
+                     "joints");
+}
+
 Motion load_motion_of_user(const std::string& path, const MotionFileOptions& options,
                            Program& program) {
   LoadedMotion loaded = load_motion(path, options);

@@ -12,6 +12,9 @@ namespace remomask::tools {
 void add_reading_options(CLI::App& command, std::optional<double>& fps, std::string& root,
                          const std::string& fps_name = "--fps");
 
+/// Adds --skeleton-map.
+void add_skeleton_map_option(CLI::App& command, std::string& map);
+
 /// Reads a motion file; what was odd about it is said on standard error.
 Motion load_motion_of_user(const std::string& path, const MotionFileOptions& options,
                            Program& program);

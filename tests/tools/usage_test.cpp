@@ -16,7 +16,7 @@ namespace {
 
 const std::vector<std::string> kCommands = {"generate", "search",  "import", "index",      "train",
                                             "evaluate", "convert", "sheet",  "procedural", "info",
-                                            "db",       "edit",    "ablate"};
+                                            "db",       "edit",    "ablate", "skeleton"};
 
 TEST(UsageTest, HelpNamesEveryCommandAndEachHasAnExample) {
   const ProgramResult help = run_program({"--help"});
