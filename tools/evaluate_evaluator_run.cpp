@@ -5,6 +5,7 @@
 
 #include "base/counted.h"
 #include "evaluation/evaluator_quality.h"
+#include "evaluation/retrieval_metrics.h"
 #include "evaluation/side_rule.h"
 #include "evaluation/tokenizer_metrics.h"
 #include "nn/model_file.h"

@@ -62,6 +62,7 @@ void register_generate(CLI::App& app, Program& program);
 void register_edit(CLI::App& app, Program& program);
 void register_evaluate(CLI::App& app, Program& program);
 void register_convert(CLI::App& app, Program& program);
+void register_retarget(CLI::App& app, Program& program);
 void register_sheet(CLI::App& app, Program& program);
 void register_procedural(CLI::App& app, Program& program);
 void register_skeleton(CLI::App& app, Program& program);

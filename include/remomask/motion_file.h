@@ -57,12 +57,12 @@ enum class NpzLayout { motion, amass };
 
 /// How a motion is written. A choice that a format has no use for is an Error.
 struct MotionWriteOptions {
-  std::optional<JointNames> names;  ///< unset: those of the format, else mixamo
+  std::optional<JointNames> names = {};  ///< unset: those of the format, else mixamo
   /// 1 to 240; unset: the motion's own. Rotations are interpolated on the sphere, and feet that
   /// stand go on standing.
-  std::optional<double> fps;
-  std::optional<LengthUnit> units;  ///< unset: those of the format; centimetres in .bvh
-  bool in_place = false;            ///< the body stays above the origin; heights are kept
+  std::optional<double> fps = {};
+  std::optional<LengthUnit> units = {};  ///< unset: those of the format; centimetres in .bvh
+  bool in_place = false;                 ///< the body stays above the origin; heights are kept
   /// The last frame becomes the first one: what differs is spread over the end of the motion.
   bool loop = false;
   bool root_motion = false;      ///< the heading lies on the joint "Root", too, not on the hips
@@ -71,8 +71,8 @@ struct MotionWriteOptions {
   bool features = false;  ///< .npy: the 263 features of HumanML3D instead of positions
   /// A figure of the user's own (.glb, .gltf, .vrm, .bvh, .fbx) that the motion is put onto: a .glb
   /// keeps its body, other figures give a .bvh of their skeleton. Empty: none.
-  std::string character;
-  std::string character_map;  ///< skeleton map of the figure, as MotionFileOptions has it
+  std::string character = {};
+  std::string character_map = {};  ///< skeleton map of the figure, as MotionFileOptions has it
 };
 
 /// What was closed by MotionWriteOptions::loop.
