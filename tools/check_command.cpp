@@ -25,7 +25,7 @@ bool is_database(const std::string& path) {
   return begin == "SQLite format 3";
 }
 
-CheckedFile check_database_file(const std::string& path, const Program& program) {
+CheckedFile check_database_file(const std::string& path, Program& program) {
   const db::CheckReport report = db::check_database(path, program.monitor());
   CheckedFile checked{.kind = "database"};
   checked.content =
