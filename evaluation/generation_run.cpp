@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/json.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "base/random.h"
 #include "db/clip_filter.h"
 #include "db/training_set.h"

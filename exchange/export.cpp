@@ -5,11 +5,17 @@
 #include <set>
 
 #include "base/file.h"
+#include "base/hash.h"
+#include "base/json.h"
 #include "remomask/error.h"
 
 namespace remomask::exchange {
 
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPlanFile = "export.json";
 
 /// A file name for every clip: its name without signs that mean something to a
 /// file system, with a number where two become the same.
@@ -53,33 +59,74 @@ std::string captions_line(const db::Clip& clip, const std::string& stem) {
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
+/// What an export writes, as long as it is not finished. Two of the same text write the same files.
+nlohmann::json export_plan(const db::Database& database, const std::vector<int64_t>& ids,
+                           const ExportOptions& options) {
+  std::string chosen;
+  for (const int64_t id : ids) chosen += std::to_string(id) + ",";
+  const MotionWriteOptions& writing = options.writing;
+  return {{"database", database.uuid()},
+          {"generation", database.generation()},
+          {"clips", content_hash(chosen)},
+          {"extension", options.extension},
+          {"names", static_cast<int>(writing.names.value_or(JointNames::mixamo))},
+          {"fps", writing.fps.value_or(0)},
+          {"units", writing.units ? static_cast<int>(*writing.units) : -1},
+          {"in_place", writing.in_place},
+          {"loop", writing.loop},
+          {"own_proportions", writing.own_proportions},
+          {"root_motion", writing.root_motion}};
+}
+
+/// Makes the folder, or finds the same export in it, unfinished. Throws FileError for any other
+/// content.
+void begin_export(const std::string& folder, const nlohmann::json& plan, bool resume) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw FileError(folder, 0, "cannot be made: " + failed.message());
+  const std::string plan_path = (fs::path(folder) / kPlanFile).string();
+  if (fs::exists(plan_path)) {
+    if (!resume) {
+      throw FileError(folder, 0,
+                      "holds an export that was not finished; go on with --resume, or name another "
+                      "folder");
+    }
+    if (try_parse_json(read_file(plan_path)) != plan) {
+      throw FileError(plan_path, 0,
+                      "the export that was begun here is another one (other clips or options, or "
+                      "the database has changed); name another folder");
+    }
+    return;
+  }
+  if (!fs::is_empty(folder)) {
+    throw FileError(folder, 0, "is not empty; name a new folder, so that nothing is mixed up");
+  }
+  write_file_atomically(plan_path, plan.dump(1) + "\n");
+}
+
 }  // namespace
 
 void export_clips(const db::Database& database, const std::vector<int64_t>& ids,
                   const std::string& folder, const ExportOptions& options, const Monitor& monitor) {
-  namespace fs = std::filesystem;
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) throw FileError(folder, 0, "cannot be made: " + failed.message());
-  if (!fs::is_empty(folder)) {
-    throw FileError(folder, 0, "is not empty; name a new folder, so that nothing is mixed up");
-  }
   const db::ReadSnapshot snapshot(database);
+  begin_export(folder, export_plan(database, ids, options), options.resume);
   FileNames names;
   std::string captions;
   for (size_t i = 0; i < ids.size(); ++i) {
     if (monitor.stop_requested()) {
-      throw Interrupted("the export was stopped; delete " + folder + " before another");
+      throw Interrupted("the export was stopped; the same command with --resume goes on");
     }
     const db::Clip clip = database.clip(ids[i]);
     const std::string stem = names.choose(clip.name);
-    save_motion((fs::path(folder) / (stem + options.extension)).string(), database.motion(ids[i]),
-                options.writing);
+    const std::string file = (fs::path(folder) / (stem + options.extension)).string();
+    // Files are written whole or not at all.
+    if (!fs::exists(file)) save_motion(file, database.motion(ids[i]), options.writing);
     captions += captions_line(clip, stem);
     monitor.report({"export " + database.path(), static_cast<double>(i + 1),
                     static_cast<double>(ids.size()), ""});
   }
   write_file_atomically((fs::path(folder) / "captions.jsonl").string(), captions);
+  fs::remove(fs::path(folder) / kPlanFile);
 }
 
 }  // namespace remomask::exchange

@@ -10,6 +10,7 @@
 #include "formats/bvh_motion.h"
 #include "formats/character.h"
 #include "formats/npy.h"
+#include "formats/sidecar.h"
 #include "motion/canonical.h"
 #include "remomask/error.h"
 #include "rig/written_rotations.h"
@@ -118,16 +119,10 @@ WrittenMotion write_motion(const std::string& path, const Motion& motion,
   check_write_options(format, options);
   const WrittenFile file =
       format.write({motion, options, sidecar, std::filesystem::path(path).stem().string()});
-  const std::string sidecar_path = path + ".json";
   std::error_code ignored;
-  std::filesystem::remove(sidecar_path, ignored);
+  std::filesystem::remove(sidecar_path(path), ignored);
   write_file_atomically(path, file.bytes);
-  if (sidecar) {
-    // Text from files may hold bytes that are not UTF-8: shown, not fatal.
-    write_file_atomically(
-        sidecar_path,
-        sidecar->dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  }
+  if (sidecar) write_sidecar(path, *sidecar, file.bytes);
   return file.written;
 }
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/json.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "lab/variants.h"
 #include "nn/model_file.h"
 #include "remomask/error.h"

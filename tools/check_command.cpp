@@ -7,7 +7,8 @@
 
 #include "base/counted.h"
 #include "db/check.h"
-#include "formats/motion_writing.h"
+#include "formats/motion_reading.h"
+#include "formats/sidecar.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
 #include "tools/check_command.h"
@@ -24,12 +25,7 @@ bool is_database(const std::string& path) {
   return begin == "SQLite format 3";
 }
 
-bool is_motion(const std::string& path) {
-  const std::string extension = formats::lower_extension(path);
-  return extension == ".bvh" || extension == ".npy";
-}
-
-CheckedFile check_database_file(const std::string& path, const Program& program) {
+CheckedFile check_database_file(const std::string& path, Program& program) {
   const db::CheckReport report = db::check_database(path, program.monitor());
   CheckedFile checked{.kind = "database"};
   checked.content =
@@ -46,6 +42,8 @@ CheckedFile check_database_file(const std::string& path, const Program& program)
 
 CheckedFile check_motion_file(const std::string& path) {
   const LoadedMotion loaded = load_motion(path);
+  // Throws if the file beside it speaks of another motion.
+  formats::read_sidecar(path);
   return {.kind = "motion",
           .content = fmt::format("{}, {:.2f} s", counted(loaded.source_frames, "frame"),
                                  loaded.motion.seconds())};
@@ -55,7 +53,7 @@ CheckedFile check_file(const std::string& path, Program& program) {
   try {
     if (!std::filesystem::exists(path)) throw FileError(path, 0, "there is no such file");
     if (is_database(path)) return check_database_file(path, program);
-    if (is_motion(path)) return check_motion_file(path);
+    if (formats::is_readable_motion(path)) return check_motion_file(path);
     return core(program).check_file(path);
   } catch (const Error& error) {
     return {.kind = "unknown", .defects = {error.what()}};

@@ -59,6 +59,7 @@ void register_export(CLI::App& group, Program& program) {
     std::string format = "npy";
     WriteOptions writing;
     ClipSelection selection;
+    bool resume = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
@@ -76,8 +77,10 @@ void register_export(CLI::App& group, Program& program) {
                    "npy (default) keeps the exact positions, the others open in other programs")
       ->check(CLI::IsMember(known));
   options->writing.add(*command);
+  command->add_flag("--resume", options->resume, "go on with an export that was stopped");
   command->callback([options, &program] {
     exchange::ExportOptions writing;
+    writing.resume = options->resume;
     writing.extension = "." + options->format;
     writing.writing = options->writing.chosen(writing.extension);
     const db::Database database(options->database, db::OpenMode::read_only);

@@ -24,7 +24,7 @@ void register_db_info(CLI::App& group, Program& program) {
   });
 }
 
-void register_check(CLI::App& group, Program& program) {
+void register_db_check(CLI::App& group, Program& program) {
   auto path = std::make_shared<std::string>();
   CLI::App* command =
       add_command(group, "check", "look for damage; the exit status is 1 when there is some",
@@ -129,7 +129,7 @@ void register_upgrade(CLI::App& group, Program& program) {
 
 void register_db_upkeep(CLI::App& group, Program& program) {
   register_db_info(group, program);
-  register_check(group, program);
+  register_db_check(group, program);
   register_snapshot(group, program);
   register_restore(group, program);
   register_upgrade(group, program);

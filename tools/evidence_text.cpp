@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
 #include "base/json.h"
+#include "formats/sidecar.h"
 #include "remomask/error.h"
 
 namespace remomask::tools {
@@ -66,12 +65,13 @@ std::string evidence_refusal(const std::vector<Evidence>& evidence) {
 }
 
 SidecarText read_sidecar_text(const std::string& motion_path) {
-  const std::string path = motion_path + ".json";
-  if (!std::filesystem::exists(path)) return {};
+  const auto sidecar = formats::read_sidecar(motion_path);
+  if (!sidecar) return {};
   try {
-    return text_of_sidecar(parse_json(read_file(path)));
+    return text_of_sidecar(*sidecar);
   } catch (const nlohmann::json::exception& error) {
-    throw FileError(path, 0, "is not what generate writes: " + json_reason(error));
+    throw FileError(formats::sidecar_path(motion_path), 0,
+                    "is not what generate writes: " + json_reason(error));
   }
 }
 

@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "base/file.h"
 #include "exchange/add_files.h"
 #include "exchange/import.h"
+#include "remomask/error.h"
 #include "remomask/motion_file.h"
 #include "synthetic/procedural.h"
 #include "tests/db/db_test_tools.h"
@@ -127,6 +129,35 @@ TEST_F(ExportTest, SingleFilesAreAdded) {
   const int64_t generation = again.generation();
   EXPECT_EQ(exchange::add_files(again, files, options).rejected.size(), 4u);
   EXPECT_EQ(again.generation(), generation);
+}
+
+TEST_F(ExportTest, AStoppedExportIsResumedAndNoOtherOne) {
+  const std::string folder = folder_ / "out";
+  std::stop_source stop;
+  Monitor monitor;
+  monitor.stop = stop.get_token();
+  monitor.progress = [&](const Progress& progress) {
+    if (progress.done >= 2) stop.request_stop();
+  };
+  EXPECT_THROW(exchange::export_clips(database_, ids_, folder, {}, monitor), Interrupted);
+  EXPECT_FALSE(std::filesystem::exists(folder + "/captions.jsonl"));
+  EXPECT_NE(error_of([&] { exchange::export_clips(database_, ids_, folder, {}); }).find("--resume"),
+            std::string::npos);
+  exchange::ExportOptions other;
+  other.resume = true;
+  other.extension = ".bvh";
+  EXPECT_NE(
+      error_of([&] { exchange::export_clips(database_, ids_, folder, other); }).find("another"),
+      std::string::npos);
+  exchange::ExportOptions resume;
+  resume.resume = true;
+  exchange::export_clips(database_, ids_, folder, resume);
+  exchange::export_clips(database_, ids_, folder_ / "whole", {});
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "whole")) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_EQ(read_file(folder + "/" + name), read_file(entry.path().string())) << name;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder + "/export.json"));
 }
 
 }  // namespace

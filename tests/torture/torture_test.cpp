@@ -56,6 +56,7 @@ const std::vector<Scenario>& scenarios() {
        {few, snapshot},
        {"db", "restore", "@/s.sqlite", "@/r.sqlite", "--force"},
        {"r.sqlite"}},
+      {"export", {few}, {"db", "export", "@/d.sqlite", "@/files", "--resume"}, {}},
       {"convert", {few, files}, {"convert", "@/first.npy", "@/b.bvh"}, {}},
   };
   return all;

@@ -1,0 +1,47 @@
+#include "formats/sidecar.h"
+
+#include <filesystem>
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/json.h"
+#include "remomask/error.h"
+
+namespace remomask::formats {
+
+namespace {
+
+constexpr const char* kMotionHash = "motion_hash";
+
+}  // namespace
+
+std::string sidecar_path(const std::string& motion_path) { return motion_path + ".json"; }
+
+void write_sidecar(const std::string& motion_path, nlohmann::json sidecar,
+                   std::string_view motion_bytes) {
+  sidecar[kMotionHash] = content_hash(motion_bytes);
+  // Text from files may hold bytes that are not UTF-8: shown, not fatal.
+  write_file_atomically(
+      sidecar_path(motion_path),
+      sidecar.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+std::optional<nlohmann::json> read_sidecar(const std::string& motion_path) {
+  const std::string path = sidecar_path(motion_path);
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  try {
+    nlohmann::json sidecar = parse_json(read_file(path));
+    const bool other = sidecar.contains(kMotionHash) &&
+                       sidecar.at(kMotionHash) != content_hash(read_file(motion_path));
+    if (other) {
+      throw FileError(path, 0,
+                      "was written for another motion than " + motion_path +
+                          " is now (the file was changed or replaced); remove one of them");
+    }
+    return sidecar;
+  } catch (const nlohmann::json::exception& error) {
+    throw FileError(path, 0, "is not what generate writes: " + json_reason(error));
+  }
+}
+
+}  // namespace remomask::formats
