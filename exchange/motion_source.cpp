@@ -1,6 +1,5 @@
 #include "exchange/motion_source.h"
 
-#include "base/counted.h"
 #include "db/clip_hash.h"
 #include "motion/canonical.h"
 #include "remomask/error.h"
@@ -27,7 +26,7 @@ std::string MotionSource::options_fingerprint() const {
 std::vector<PreparedClip> cut_into_clips(const db::Clip& clip, const Motion& motion,
                                          const Skeleton& skeleton, const WindowOptions& options) {
   if (motion.frames < options.min_frames) {
-    throw Error("has " + counted(motion.frames, "frame") + " at " +
+    throw Error("has " + std::to_string(motion.frames) + " frames at " +
                 std::to_string(static_cast<int>(skeleton.fps)) + " per second, at least " +
                 std::to_string(options.min_frames) + " are needed");
   }
