@@ -80,6 +80,7 @@ TEST(RestFrame, IsSaidByTheReader) {
   // A BVH file whose first frame has zero rotations.
   save_motion(in_scratch("plain.bvh"), make_walker(60));
   formats::Bvh bvh = formats::parse_bvh(read_file(in_scratch("plain.bvh")), "plain.bvh");
+  bvh.joints[0].name = "Reference";  // else it would be a file of our own
   bvh.frames += 1;
   std::vector<float> first(static_cast<size_t>(bvh.channels), 0.f);
   first[1] = bvh.values[1];
