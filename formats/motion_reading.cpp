@@ -55,7 +55,8 @@ LoadedMotion finish_reading(RawMotion raw, const MotionFileOptions& options) {
   loaded.source_fps = options.fps.value_or(raw.fps);
   loaded.source_frames = raw.positions.frames;
   int skipped = options.skip_frames;
-  if (skipped == 0 && raw.rest_pose) {
+  // Our own files begin with the motion, even where it begins in a T-pose.
+  if (skipped == 0 && raw.rest_pose && loaded.skeleton_map != "remomask") {
     skipped = count_rest_frames(raw.positions, *raw.rest_pose, loaded.source_fps);
     if (skipped == 1) loaded.warnings.emplace_back("the first frame is a rest pose: left out");
     if (skipped > 1) {

@@ -247,18 +247,14 @@ std::string why_no_human(const SkeletonView& skeleton, const std::vector<NameRea
   }
   trunk += (rest[at(trunk_top(body))] - last).norm();
   if (!(legs > 1e-9) || !(trunk > 1e-9)) return "its bones have no length";
-  // A trunk that lies over four legs, or a tail and legs shorter than the trunk.
+  // A trunk that lies over four legs. People sit and bend, too, but their legs are longer.
   const bool tail =
       std::any_of(names.begin(), names.end(), [](const NameReading& name) { return name.tail; });
-  const auto lies = [&](const SkeletonPose& pose) {
-    const Vec3 up = trunk_direction(pose, body);
-    return std::abs(cosine(up, leg_direction(pose, body, 0) + leg_direction(pose, body, 1))) < 0.5;
-  };
-  const bool on_four = lies(skeleton.rest) && lies(skeleton.first);
-  if (legs < 0.95 * trunk && (tail || on_four)) {
+  const Vec3 up = trunk_direction(skeleton.first, body);
+  const Vec3 down = leg_direction(skeleton.first, body, 0) + leg_direction(skeleton.first, body, 1);
+  if (std::abs(cosine(up, down)) < 0.5 && legs < (tail ? 1.3 : 0.95) * trunk) {
     return "it has the build of an animal on four legs";
   }
-  if (tail && on_four && legs < 1.3 * trunk) return "it has the build of an animal on four legs";
   return "";
 }
 

@@ -63,9 +63,18 @@ class TrunkFinder {
     if (!pelvises.empty() && (legs_ < 0 || skeleton_.parents[static_cast<size_t>(legs_)] < 0)) {
       return pelvises[0];
     }
-    if (legs_ >= 0) return legs_;
     const std::vector<int> spine = named(BodyPart::spine);  // Rigify calls the pelvis "spine"
+    if (legs_ >= 0 && (spine.empty() || is_near_hips(legs_))) return legs_;
     return spine.empty() ? -1 : spine[0];
+  }
+
+  /// Not farther from the hips than a knee is.
+  bool is_near_hips(int joint) const {
+    const std::vector<Vec3>& p = skeleton_.first.positions;
+    const LimbJoints &left = body_.legs[0], &right = body_.legs[1];
+    if (left[kHip] < 0 || right[kHip] < 0 || left[kKnee] < 0) return true;
+    const Vec3 hips = (p[at(left[kHip])] + p[at(right[kHip])]) / 2;
+    return (p[at(joint)] - hips).norm() <= (p[at(left[kKnee])] - p[at(left[kHip])]).norm();
   }
 
   bool is_limb(int joint) const {

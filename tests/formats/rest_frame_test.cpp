@@ -11,9 +11,11 @@
 namespace remomask {
 
 using testing_support::make_walker;
-using testing_support::temporary;
+using testing_support::temporary_folder;
 
 namespace {
+
+std::string in_scratch(const std::string& name) { return temporary_folder() + "/" + name; }
 
 /// Our walker at 60 frames a second with a frame before it in which the arms are stretched out.
 Motion walker_after_rest_pose(int frames, Motion& rest) {
@@ -76,20 +78,21 @@ TEST(RestFrame, ThatBlendsIntoTheMotionIsLeftOutWithTheBlend) {
 
 TEST(RestFrame, IsSaidByTheReader) {
   // A BVH file whose first frame has zero rotations.
-  save_motion(temporary("plain.bvh"), make_walker(60));
-  formats::Bvh bvh = formats::parse_bvh(read_file(temporary("plain.bvh")), "plain.bvh");
+  save_motion(in_scratch("plain.bvh"), make_walker(60));
+  formats::Bvh bvh = formats::parse_bvh(read_file(in_scratch("plain.bvh")), "plain.bvh");
+  bvh.joints[0].name = "Reference";  // else it would be a file of our own
   bvh.frames += 1;
   std::vector<float> first(static_cast<size_t>(bvh.channels), 0.f);
   first[1] = bvh.values[1];
   bvh.values.insert(bvh.values.begin(), first.begin(), first.end());
   bvh.frame_time = 1. / 60;
-  write_file_atomically(temporary("cmu.bvh"), formats::format_bvh(bvh));
-  const LoadedMotion loaded = load_motion(temporary("cmu.bvh"));
+  write_file_atomically(in_scratch("cmu.bvh"), formats::format_bvh(bvh));
+  const LoadedMotion loaded = load_motion(in_scratch("cmu.bvh"));
   ASSERT_EQ(loaded.warnings.size(), 1u);
   EXPECT_NE(loaded.warnings[0].find("rest pose"), std::string::npos) << loaded.warnings[0];
   MotionFileOptions keep;
   keep.skip_frames = 1;  // said by the user: nothing is looked for
-  EXPECT_TRUE(load_motion(temporary("cmu.bvh"), keep).warnings.empty());
+  EXPECT_TRUE(load_motion(in_scratch("cmu.bvh"), keep).warnings.empty());
 }
 
 }  // namespace remomask
