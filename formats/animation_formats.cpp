@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/file.h"
 #include "formats/fbx_writer.h"
 #include "formats/foot_contacts.h"
 #include "formats/gltf_writer.h"
@@ -89,11 +91,22 @@ const std::vector<MotionFormat>& animation_formats() {
   return formats;
 }
 
-std::string write_together(const std::string& extension, const std::vector<WritingJob>& jobs) {
-  if (extension == ".glb") return glb(jobs).bytes;
-  if (extension == ".fbx") return fbx(jobs).bytes;
-  throw Error(fmt::format("{} files hold one motion each; several go together into .glb or .fbx",
-                          extension));
+void require_room_for_several(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".glb" || extension == ".fbx") return;
+  throw Error(
+      fmt::format("\"{}\": {} files hold one motion each; several go together into .glb or "
+                  ".fbx",
+                  path, extension));
+}
+
+WrittenMotion write_together(const std::string& path, const std::vector<WritingJob>& jobs) {
+  require_room_for_several(path);
+  const WrittenFile file = lower_extension(path) == ".glb" ? glb(jobs) : fbx(jobs);
+  std::error_code ignored;
+  std::filesystem::remove(path + ".json", ignored);
+  write_file_atomically(path, file.bytes);
+  return file.written;
 }
 
 std::string features_bytes(const Motion& motion) {

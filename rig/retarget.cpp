@@ -32,6 +32,18 @@ constexpr size_t kArms[][3] = {{16, 18, 20}, {17, 19, 21}};
 /// Without these there is no body to move.
 constexpr size_t kNeeded[] = {0, 1, 2, 4, 5, 7, 8, 16, 17, 18, 19};
 
+constexpr size_t kTrunk[] = {3, 6, 9, 12, 15, 13, 14};
+
+/// The lowest joint that both hang from; -1 if none.
+int joint_above(const SkeletonView& rig, int a, int b) {
+  const std::vector<int> of_b = rig.path_to_root(b);
+  for (const int joint : rig.path_to_root(a)) {
+    const bool shared = std::find(of_b.begin(), of_b.end(), joint) != of_b.end();
+    if (shared && joint != a && joint != b) return joint;
+  }
+  return -1;
+}
+
 /// The nearest of the 24 turns that map axes to axes: a rig that leans a little keeps its lean.
 Quat nearest_axes(const Vec3& left, const Vec3& up) {
   const auto snap = [](const Vec3& v, int taken) {
@@ -318,20 +330,25 @@ BodyJoints body_joints(const SkeletonMap& map, const SkeletonView& rig) {
   BodyJoints body;
   body.fill(-1);
   const std::array<PlacedPoint, 22> points = place_points(map, rig);
-  for (size_t part = 0; part < body.size(); ++part) {
-    const PlacedPoint& point = points[part];
-    const bool plain = point.offset.isZero() && (point.weight == 0 || point.from == point.to);
-    // A pelvis between joints is moved by the lowest joint that holds it.
-    if (plain || part == kPartPelvis) body[part] = point.from;
-  }
   std::vector<bool> used(rig.size(), false);
-  for (int& joint : body) {
-    if (joint < 0) continue;
-    if (used[static_cast<size_t>(joint)]) {
-      joint = -1;
-    } else {
-      used[static_cast<size_t>(joint)] = true;
-    }
+  const auto take = [&](size_t part, int joint) {
+    if (body[part] >= 0 || joint < 0 || used[static_cast<size_t>(joint)]) return;
+    body[part] = joint;
+    used[static_cast<size_t>(joint)] = true;
+  };
+  const auto as_joint = [](const PlacedPoint& point) {
+    if (point.weight == 0) return point.from;
+    const bool whole = point.from == point.to || point.weight == 1;
+    return point.offset.isZero() && whole ? point.to : -1;
+  };
+  take(kPartPelvis, as_joint(points[0]));
+  // A pelvis between two joints is moved by the one that both hang from.
+  take(kPartPelvis, joint_above(rig, points[1].from, points[2].from));
+  for (size_t part = 1; part < body.size(); ++part) take(part, as_joint(points[part]));
+  // A trunk with fewer joints than ours, or with more, bends where it has joints.
+  for (const size_t part : kTrunk) {
+    const PlacedPoint& point = points[part];
+    if (point.offset.isZero()) take(part, point.weight < 0.5 ? point.from : point.to);
   }
   for (const size_t part : kNeeded) {
     if (body[part] < 0) {

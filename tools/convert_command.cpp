@@ -25,8 +25,10 @@ void register_convert(CLI::App& app, Program& program) {
                   "remomask convert take.bvh joints.npy\n"
                   "  remomask convert 01_10.amc walk.bvh --fps 60 --output-fps 30 --names unreal");
   command
-      ->add_option("input", options->input,
-                   ".bvh, .amc (its .asf beside it), .npy or .npz (joints, features, AMASS poses)")
+      ->add_option(
+          "input", options->input,
+          ".bvh, .glb, .gltf, .vrma, .fbx, .amc (its .asf beside it), .npy or .npz (joints, "
+          "features, AMASS poses)")
       ->required();
   command->add_option("output", options->output, formats::written_extensions())->required();
   options->overwrite.add(*command);
@@ -38,6 +40,8 @@ void register_convert(CLI::App& app, Program& program) {
   command->add_option("--metres-per-unit", options->metres_per_unit, "default: detected")
       ->check(positive_number());
   add_reading_options(*command, options->file.fps, options->file.root);
+  command->add_option("--animation", options->file.animation,
+                      "name or number (from 0) of the animation of a glTF or FBX file");
   command->add_option("--skip-frames", options->file.skip_frames, "frames to drop at the start");
   command->callback([options, &program] {
     if (!options->up_axis.empty()) options->file.up_axis = options->up_axis[0];
@@ -57,7 +61,7 @@ void register_convert(CLI::App& app, Program& program) {
                                {"up_axis", std::string(1, loaded.up_axis)},
                                {"warnings", loaded.warnings}};
       add_written(answer, written);
-      print_loop(written, program);
+      print_written(written, program);
       return program.print_json(answer);
     }
     for (const std::string& warning : loaded.warnings) program.warn(warning);
@@ -65,7 +69,7 @@ void register_convert(CLI::App& app, Program& program) {
                counted(written.frames, "frame"), written.fps,
                counted(loaded.source_frames, "frame"), loaded.source_fps,
                loaded.skeleton_map.empty() ? "none" : loaded.skeleton_map);
-    print_loop(written, program);
+    print_written(written, program);
   });
 }
 

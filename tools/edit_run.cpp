@@ -53,7 +53,7 @@ void run_edit(const EditCommand& command, Program& program) {
     const WrittenMotion written = save_motion(path, made, command.writing.chosen(path));
     motions.push_back(answer_entry(pipeline::motion_document(made), path, seconds));
     add_written(motions.back(), written);
-    print_loop(written, program);
+    print_written(written, program);
     rows.push_back({command.prompt, evidence_line(made.evidence), made.motion});
     ++options.seed;
     if (program.json) continue;

@@ -6,6 +6,7 @@
 
 #include "tools/core.h"
 
+#include "formats/animation_formats.h"
 #include "formats/motion_writing.h"
 #include "remomask/error.h"
 #include "text/caption.h"
@@ -58,6 +59,8 @@ void register_generate(CLI::App& app, Program& program) {
   command->add_option("-n,--count", options->count, "number of motions, seeds SEED, SEED+1, ...")
       ->capture_default_str()
       ->check(number_between(1, 1000));
+  command->add_flag("--one-file", options->one_file,
+                    "with -n: all motions as animations of one .glb or .fbx file");
   command->add_flag("--influence", options->generation.generate.influence,
                     "also say what share of the codes would be others without each retrieved "
                     "motion (as many generations more)");
@@ -72,6 +75,12 @@ void register_generate(CLI::App& app, Program& program) {
       throw CLI::RequiredError("a sentence, or --script");
     }
     require_writable_output(options->output);
+    if (options->one_file) {
+      formats::require_room_for_several(options->output);
+      if (!options->writing.chosen(options->output).character.empty()) {
+        throw Error("--one-file and --character do not go together; leave out one of them");
+      }
+    }
     options->writing.chosen(options->output);
     check_prompt_or_script(options->prompt, options->script, options->generation, options->count);
     if (options->prompt.size() > text::kMostCaptionBytes) {

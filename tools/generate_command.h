@@ -19,6 +19,7 @@ struct GenerateCommand {
   OutputOptions overwrite;
   WriteOptions writing;
   int count = 1;
+  bool one_file = false;  ///< all motions as animations of one file
 };
 
 void run_generate(const GenerateCommand& command, Program& program);

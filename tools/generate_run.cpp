@@ -5,6 +5,7 @@
 
 #include "base/counted.h"
 #include "base/file.h"
+#include "formats/animation_formats.h"
 #include "pipeline/motion_document.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
@@ -74,12 +75,29 @@ void run_script(const GenerateCommand& command, const TextToMotion& remomask,
                     slice(made.motion, segment.first, segment.last)});
   }
   if (!program.json) print_script(command.output, made, seconds);
-  print_loop(written, program);
+  print_written(written, program);
   finish_sheet(command.sheet, rows, program);
   nlohmann::json entry = answer_entry(pipeline::motion_document(made), command.output, seconds);
   entry["script_file"] = command.script;
   add_written(entry, written);
   print_motions(program, nlohmann::json::array({entry}));
+}
+
+/// The motions of --one-file until the file is written.
+struct Together {
+  std::vector<GeneratedMotion> motions;
+  std::vector<nlohmann::json> documents;
+};
+
+WrittenMotion write_all(const GenerateCommand& command, const Together& together) {
+  const MotionWriteOptions writing = command.writing.chosen(command.output);
+  std::vector<formats::WritingJob> jobs;
+  for (size_t i = 0; i < together.motions.size(); ++i) {
+    const GeneratedMotion& made = together.motions[i];
+    jobs.push_back({made.motion, writing, &together.documents[i],
+                    fmt::format("{} {}", i + 1, command.prompt)});
+  }
+  return formats::write_together(command.output, jobs);
 }
 
 }  // namespace
@@ -93,21 +111,32 @@ void run_generate(const GenerateCommand& command, Program& program) {
   if (!command.script.empty()) return run_script(command, remomask, options, program);
   nlohmann::json motions = nlohmann::json::array();
   std::vector<drawing::SheetRow> rows;
+  Together together;
+  if (command.one_file) command.overwrite.check(command.output, "", program);
   for (int i = 0; i < command.count; ++i) {
     const auto start = Clock::now();
     GeneratedMotion made;
     try {
       made = remomask.generate(command.prompt, options, monitor);
     } catch (const Interrupted&) {
+      if (!together.motions.empty()) write_all(command, together);
       stop_after(i, command.count, options.seed);
     }
     program.finish_progress();
     const double seconds = seconds_since(start);
-    const std::string path = sample_path(command.output, i, command.count);
-    command.overwrite.check(path, "", program);
-    const WrittenMotion written = save_motion(path, made, command.writing.chosen(path));
-    motions.push_back(answer_entry(pipeline::motion_document(made), path, seconds));
-    add_written(motions.back(), written);
+    const std::string path =
+        command.one_file ? command.output : sample_path(command.output, i, command.count);
+    const nlohmann::json document = pipeline::motion_document(made);
+    motions.push_back(answer_entry(document, path, seconds));
+    WrittenMotion written;
+    if (command.one_file) {
+      together.motions.push_back(made);
+      together.documents.push_back(document);
+    } else {
+      command.overwrite.check(path, "", program);
+      written = save_motion(path, made, command.writing.chosen(path));
+      add_written(motions.back(), written);
+    }
     rows.push_back({command.prompt, evidence_line(made.evidence), made.motion});
     if (!program.json) {
       fmt::print("{}: {} ({:.1f} s of motion) in {:.2f} s, seed {}\n", path,
@@ -115,8 +144,12 @@ void run_generate(const GenerateCommand& command, Program& program) {
       print_followed(made.evidence);
       if (i == 0 || options.influence) print_evidence(made.evidence);
     }
-    print_loop(written, program);
+    print_written(written, program);
     ++options.seed;
+  }
+  if (command.one_file) {
+    const WrittenMotion written = write_all(command, together);
+    for (nlohmann::json& entry : motions) add_written(entry, written);
   }
   finish_sheet(command.sheet, rows, program);
   print_motions(program, std::move(motions));

@@ -46,6 +46,25 @@ void WriteOptions::add(CLI::App& command, const std::string& rate) {
       .add_flag("--root-motion", root_motion_,
                 "the joint above the hips carries the heading, too, not the position alone")
       ->group(group);
+  command
+      .add_option("--npz", npz_,
+                  "keys of an .npz file: motion (positions, rotations, contacts) or amass")
+      ->check(CLI::IsMember({"motion", "amass"}))
+      ->group(group);
+  command
+      .add_flag("--features", features_,
+                ".npy: the 263 features of HumanML3D instead of joint positions")
+      ->group(group);
+  command
+      .add_option(
+          "--character", character_,
+          "put the motion onto your own figure (.glb, .gltf, .vrm, .fbx, .bvh); writes .glb "
+          "(keeps the body of a glTF figure) or .bvh")
+      ->group(group);
+  command
+      .add_option("--character-map", character_map_,
+                  "skeleton map of the figure, where its joints are not found")
+      ->group(group);
 }
 
 void WriteOptions::add_own_proportions(CLI::App& command) {
@@ -66,11 +85,16 @@ MotionWriteOptions WriteOptions::chosen(const std::string& output) const {
   options.loop = loop_;
   options.root_motion = root_motion_;
   options.own_proportions = own_proportions_;
+  options.npz = npz_ == "amass" ? NpzLayout::amass : NpzLayout::motion;
+  options.features = features_;
+  options.character = character_;
+  options.character_map = character_map_;
   formats::check_write_options(formats::written_format(output), options);
   return options;
 }
 
-void print_loop(const WrittenMotion& written, Program& program) {
+void print_written(const WrittenMotion& written, Program& program) {
+  for (const std::string& warning : written.warnings) program.warn(warning);
   if (!written.loop) return;
   const LoopGap& gap = *written.loop;
   if (!program.json) {
@@ -90,6 +114,7 @@ void print_loop(const WrittenMotion& written, Program& program) {
 void add_written(nlohmann::json& answer, const WrittenMotion& written) {
   answer["file_frames"] = written.frames;
   answer["file_fps"] = written.fps;
+  if (!written.warnings.empty()) answer["character_warnings"] = written.warnings;
   if (!written.loop) return;
   const LoopGap& gap = *written.loop;
   answer["loop"] = {{"degrees", gap.degrees},

@@ -22,15 +22,17 @@ class WriteOptions {
   MotionWriteOptions chosen(const std::string& output) const;
 
  private:
-  std::string names_, units_;
+  std::string names_, units_, npz_, character_, character_map_;
   double fps_ = 0;
   bool in_place_ = false, loop_ = false, root_motion_ = false, own_proportions_ = false;
+  bool features_ = false;
 };
 
-/// Says what was closed by --loop, and warns where it was much. Nothing without --loop.
-void print_loop(const WrittenMotion& written, Program& program);
+/// Says what was closed by --loop and warns where it was much; warns of what was odd about the
+/// character. Nothing without these.
+void print_written(const WrittenMotion& written, Program& program);
 
-/// Members "file_frames", "file_fps" and "loop" of an answer in JSON.
+/// Members "file_frames", "file_fps", "loop" and "character_warnings" of an answer in JSON.
 void add_written(nlohmann::json& answer, const WrittenMotion& written);
 
 }  // namespace remomask::tools

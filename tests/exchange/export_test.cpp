@@ -84,6 +84,29 @@ TEST_F(ExportTest, BvhReturnsWithinTwoCentimetres) {
   }
 }
 
+TEST_F(ExportTest, WhatIsRigidStaysWithinAMillimetreInGlb) {
+  const exchange::ExportOptions glb{".glb", {}};
+  exchange::export_clips(database_, ids_, folder_ / "out", glb);
+  db::Database first(folder_ / "first", db::OpenMode::create);
+  EXPECT_TRUE(import_into(first, folder_ / "out").rejected.empty());
+  EXPECT_EQ(by_name(first, false), by_name(database_, false));
+  std::vector<int64_t> all;
+  for (const db::Clip& clip : first.clips()) all.push_back(clip.id);
+  exchange::export_clips(first, all, folder_ / "again", glb);
+  db::Database second(folder_ / "second", db::OpenMode::create);
+  EXPECT_TRUE(import_into(second, folder_ / "again").rejected.empty());
+  for (const db::Clip& clip : first.clips()) {
+    const Motion before = first.motion(clip.id);
+    const Motion after = second.motion(*second.find_name(clip.name));
+    ASSERT_EQ(before.positions.size(), after.positions.size());
+    double worst = 0;
+    for (size_t v = 0; v < before.positions.size(); ++v) {
+      worst = std::max<double>(worst, std::abs(before.positions[v] - after.positions[v]));
+    }
+    EXPECT_LT(worst, 0.001) << clip.name;
+  }
+}
+
 TEST_F(ExportTest, WritesTheChosenClipsAndMixesNothingUp) {
   exchange::export_clips(database_, {ids_[1]}, folder_ / "out", exchange::ExportOptions{});
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / "out"), {}), 2);

@@ -68,7 +68,7 @@ TEST(UsageTest, BadInputEndsWithOneAndSaysWhatToDo) {
       {{"search", "walk", "--db", missing}, "missing.sqlite"},
       {{"search", "walk", "--model", model}, "garbage.safetensors"},
       {{"generate", "walk", "-o", scratch.path("no/folder/o.bvh")}, "folder"},
-      {{"generate", "walk", "-o", scratch.path("o.fbx")}, "o.fbx"},
+      {{"generate", "walk", "-o", scratch.path("o.abc")}, "o.abc"},
       {{"generate", "   ", "-o", scratch.path("o.bvh")}, "empty"},
   };
   for (const BrokenCase& broken : cases) {
