@@ -48,7 +48,7 @@ std::string changed(const std::string& glb, const std::function<void(nlohmann::j
          "JSON" + text + rest;
 }
 
-std::string refusal(const std::string& bytes, const std::string& name = "bad.glb") {
+std::string gltf_refusal(const std::string& bytes, const std::string& name = "bad.glb") {
   write_file_atomically(hostile_path(name), bytes);
   try {
     formats::read_gltf(hostile_path(name));
@@ -62,7 +62,7 @@ std::string refusal(const std::string& bytes, const std::string& name = "bad.glb
 
 TEST(HostileGltf, WhatPointsNowhereIsRefused) {
   const std::string glb = sound_file(".glb");
-  ASSERT_EQ(refusal(glb), "");
+  ASSERT_EQ(gltf_refusal(glb), "");
   const std::pair<const char*, std::function<void(nlohmann::json&)>> cases[] = {
       {"node of a channel",
        [](auto& j) { j["animations"][0]["channels"][0]["target"]["node"] = 999; }},
@@ -136,7 +136,7 @@ TEST(HostileGltf, WhatPointsNowhereIsRefused) {
       {"device", [](auto& j) { j["buffers"][0]["uri"] = "/dev/zero"; }},
       {"no base64", [](auto& j) { j["buffers"][0]["uri"] = "data:x;base64,!!!!"; }}};
   for (const auto& [what, change] : cases) {
-    EXPECT_NE(refusal(changed(glb, change)), "") << what;
+    EXPECT_NE(gltf_refusal(changed(glb, change)), "") << what;
   }
 }
 
@@ -144,29 +144,29 @@ TEST(HostileGltf, ImagesAreNeverOpened) {
   const std::string glb = changed(sound_file(".glb"), [](nlohmann::json& json) {
     json["images"] = {{{"uri", "/dev/zero"}}, {{"uri", "../secret.png"}}, {{"bufferView", 9999}}};
   });
-  EXPECT_EQ(refusal(glb), "");
+  EXPECT_EQ(gltf_refusal(glb), "");
 }
 
 TEST(HostileGltf, DepthLengthAndTimeAreBounded) {
   const std::string glb = sound_file(".glb");
-  EXPECT_NE(refusal("{\"asset\": {\"version\": \"2.0\", \"extras\": " + std::string(500000, '[') +
+  EXPECT_NE(gltf_refusal("{\"asset\": {\"version\": \"2.0\", \"extras\": " + std::string(500000, '[') +
                         std::string(500000, ']') + "}}",
                     "deep.gltf"),
             "");
-  EXPECT_NE(refusal("{\"asset\": " + std::string(500000, '['), "open.gltf"), "");
-  EXPECT_NE(refusal(glb.substr(0, glb.size() / 2)), "");
-  EXPECT_NE(refusal("glTF"), "");
-  EXPECT_NE(refusal(""), "");
+  EXPECT_NE(gltf_refusal("{\"asset\": " + std::string(500000, '['), "open.gltf"), "");
+  EXPECT_NE(gltf_refusal(glb.substr(0, glb.size() / 2)), "");
+  EXPECT_NE(gltf_refusal("glTF"), "");
+  EXPECT_NE(gltf_refusal(""), "");
   // The last key a billion seconds later would be as many frames.
   std::string late = glb;
   const float times[] = {0.15F, 0.2F}, far[] = {0.15F, 1e9F};
   const size_t at = late.find(std::string(reinterpret_cast<const char*>(times), sizeof times));
   ASSERT_NE(at, std::string::npos);
   late.replace(at, sizeof far, reinterpret_cast<const char*>(far), sizeof far);
-  EXPECT_NE(refusal(late), "");
+  EXPECT_NE(gltf_refusal(late), "");
   const float nothing[] = {0.15F, NAN};
   late.replace(at, sizeof nothing, reinterpret_cast<const char*>(nothing), sizeof nothing);
-  EXPECT_NE(refusal(late), "");
+  EXPECT_NE(gltf_refusal(late), "");
 }
 
 TEST(HostileGltf, NamesOfFilesBesideIt) {
