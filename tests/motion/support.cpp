@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "kinematics/leg.h"
 #include "motion/rotation.h"
 
 namespace remomask::testing_support {
@@ -101,6 +102,22 @@ Motion make_walker(int frames, const std::function<double(int)>& heading) {
 
 Motion make_statue(int frames, const std::function<double(int)>& heading) {
   return make_motion(frames, 0, 0, 0, heading);
+}
+
+Motion make_swaying_statue(int frames) {
+  const Skeleton& skeleton = humanml_skeleton();
+  Motion motion = make_statue(frames, [](int) { return 0.0; });
+  for (int t = 0; t < frames; ++t) {
+    const Vec3 sway(0, -0.05 - 0.04 * std::sin(0.6 * t), 0.03 * std::sin(0.25 * t));
+    for (const auto* feet : {&skeleton.left_feet, &skeleton.right_feet}) {
+      const kinematics::Leg leg = kinematics::leg_of(*feet, skeleton, motion, t);
+      kinematics::move_foot(motion, t, leg, -sway);
+    }
+    for (int j = 0; j < motion.joints; ++j) {
+      set_joint_position(motion, t, j, joint_position(motion, t, j) + sway);
+    }
+  }
+  return motion;
 }
 
 Motion moved(const Motion& motion, double angle, const Vec3& shift, double scale) {

@@ -24,6 +24,9 @@ inline Motion make_walker(int frames) {
 /// The same pose in every frame, its hips and shoulders square, turned by `heading`.
 Motion make_statue(int frames, const std::function<double(int)>& heading);
 
+/// A body that sways and squats over feet that stand still; its bones keep their lengths.
+Motion make_swaying_statue(int frames);
+
 /// Every frame turned by `angle` around Y and moved.
 Motion moved(const Motion& motion, double angle, const Vec3& shift, double scale = 1);
 

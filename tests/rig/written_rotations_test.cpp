@@ -143,16 +143,7 @@ TEST(WrittenRotations, OtherFrameRatesKeepTheMotion) {
 }
 
 TEST(WrittenRotations, AStandingFootStandsAtOtherFrameRates) {
-  Motion motion = make_walker(20);
-  const Vec3 ankle = joint_position(motion, 0, 7), toe = joint_position(motion, 0, 10);
-  for (int t = 0; t < motion.frames; ++t) {  // squats over its left foot
-    for (int j = 0; j < 22; ++j) {
-      motion.at(t, j)[2] -= 0.05f * static_cast<float>(t);
-      motion.at(t, j)[1] -= 0.2f * std::abs(std::sin(0.6f * static_cast<float>(t)));
-    }
-    set_joint_position(motion, t, 7, ankle);
-    set_joint_position(motion, t, 10, toe);
-  }
+  const Motion motion = testing_support::make_swaying_statue(20);
   const JointRotations solved = solve_rotations(motion);
   const Motion source = joint_positions(solved);
   const Motion fast = joint_positions(rig::resample_rotations(solved, 120));
