@@ -1,0 +1,55 @@
+#!/bin/bash
+# Readers of other people place every joint of what the program writes where the program has it:
+# three.js, bvhio and pybvh, the validator of glTF, and Blender where it is installed.
+#   tests/readers_test.sh PROGRAM CACHE_FOLDER
+# The readers are installed into the cache folder ($REMOMASK_READERS, where that is set). Exits with
+# 77 (skipped) and the reason where node or python3-venv is missing, or the network at first use.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+program=$(realpath "$1")
+cache=${REMOMASK_READERS:-$2}
+skip() { echo "skipped: $1"; exit 77; }
+command -v node >/dev/null && command -v npm >/dev/null || skip "node and npm are not installed"
+python3 -c 'import ensurepip' 2>/dev/null || skip "python3-venv is not installed"
+
+mkdir -p "$cache"
+cache=$(cd "$cache" && pwd)
+pinned=$(cat "$root"/tests/readers/{requirements.txt,package.json} | sha256sum)
+if [ "$(cat "$cache/pinned" 2>/dev/null)" != "$pinned" ]; then
+  python3 -m venv "$cache/venv"
+  "$cache/venv/bin/pip" -q install -r "$root/tests/readers/requirements.txt" || skip "no PyPI"
+  cp "$root/tests/readers/package.json" "$cache"
+  (cd "$cache" && npm install --silent --no-audit --no-fund) || skip "no npm registry"
+  echo "$pinned" >"$cache/pinned"
+fi
+# node finds the packages above the folder of a script.
+mkdir -p "$cache/scripts"
+cp "$root"/tests/readers/*.mjs "$cache/scripts"
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+"$program" --quiet procedural --db motions.sqlite --count 12 >/dev/null
+for format in bvh npz glb vrma; do
+  "$program" --quiet db export motions.sqlite $format --format $format >/dev/null
+done
+failed=0
+try() { "$@" || failed=1; }
+for bvh in bvh/*.bvh; do
+  stem=$(basename "$bvh" .bvh)
+  try "$cache/venv/bin/python" "$root/tests/readers/bvh_python.py" "$bvh" "npz/$stem.npz"
+  try node "$cache/scripts/bvh_three.mjs" "$bvh" "npz/$stem.npz"
+  for file in "glb/$stem.glb" "vrma/$stem.vrma"; do
+    try node "$cache/scripts/gltf_three.mjs" "$file" "npz/$stem.npz"
+  done
+done
+try node "$cache/scripts/gltf_validate.mjs" glb/*.glb vrma/*.vrma
+# Debian 12's Blender cannot open any BVH file.
+if command -v blender >/dev/null; then
+  glb=(glb/*.glb)
+  try blender -b --python-exit-code 1 --python "$root/tests/readers/blender_joints.py" -- \
+    "${glb[0]}" "npz/$(basename "${glb[0]}" .glb).npz"
+else
+  echo "Blender is not installed: not tried"
+fi
+exit $failed
