@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kTemporaryMarker = ".tmp-";
 constexpr uint64_t kFirstPiece = 4096;
-constexpr uint64_t kMaxPipeBytes = uint64_t{1} << 30;
+constexpr uint64_t kMaxPipeBytes = uint64_t{1} << 28;
 
 std::string errno_text() { return std::strerror(errno); }
 
@@ -54,6 +54,8 @@ std::string read_bounded_file(const std::string& path, uint64_t max_bytes) {
   if (::fstat(descriptor.get(), &status) != 0 || S_ISDIR(status.st_mode)) {
     throw FileError(path, 0, "is not a readable file");
   }
+  // A file has an end; a device or a pipe may not have one.
+  if (!S_ISREG(status.st_mode)) max_bytes = std::min(max_bytes, kMaxPipeBytes);
   const auto refuse = [&] {
     throw FileError(path, 0,
                     "holds more than " + std::to_string(max_bytes >> 20) +
@@ -83,11 +85,7 @@ std::string read_bounded_file(const std::string& path, uint64_t max_bytes) {
 }
 
 std::string read_file(const std::string& path) {
-  std::error_code ignored;
-  // A file has an end; a device or a pipe may not have one.
-  return read_bounded_file(path, fs::is_regular_file(path, ignored)
-                                     ? std::numeric_limits<uint64_t>::max()
-                                     : kMaxPipeBytes);
+  return read_bounded_file(path, std::numeric_limits<uint64_t>::max());
 }
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {

@@ -19,7 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kCmuFps = 120;
 constexpr double kMetresPerInch = 0.0254;
 /// Joints times frames; more would take more than a gigabyte.
 constexpr size_t kMaxJointFrames = size_t{1} << 25;
@@ -47,13 +46,6 @@ class AmcParser {
     }
     finish_frame();
     if (result_.source.frames == 0) lines_.fail("there are no frames in it");
-    if (result_.source.fps == 0) {
-      warn(
-          fmt::format("AMC files state no frame rate: {:g} frames a second are taken, as in those "
-                      "of CMU; give another with --fps",
-                      kCmuFps));
-      result_.source.fps = kCmuFps;
-    }
     if (stretched_) warn("changes of the bones' lengths (degree of freedom \"l\") are left out");
     return std::move(result_);
   }

@@ -9,7 +9,7 @@ namespace remomask::formats {
 
 /// A motion in the format of Acclaim: an .asf file with the skeleton, an .amc file with its frames.
 struct AcclaimMotion {
-  rig::SourceMotion source;  ///< no rate where the .amc file states none
+  rig::SourceMotion source;  ///< rate 0 where the .amc file states none
   std::vector<std::string> warnings;
 };
 

@@ -22,6 +22,8 @@ namespace remomask::formats {
 
 namespace {
 
+constexpr double kAmcFps = 120;
+
 RawMotion read_bvh_motion(const std::string& path, const MotionFileOptions& options) {
   Bvh bvh = read_bvh(path, {.root = options.root, .frame_time_known = options.fps.has_value()});
   check_frame_count(static_cast<size_t>(bvh.frames), path);
@@ -61,6 +63,12 @@ RawMotion read_npz_file(const std::string& path, const MotionFileOptions& option
 RawMotion read_amc_motion(const std::string& path, const MotionFileOptions& options) {
   AcclaimMotion acclaim = read_amc(path);
   RawMotion raw = load_source_motion(acclaim.source, path, options);
+  if (raw.fps == 0 && !options.fps) {
+    raw.fps = kAmcFps;
+    raw.warnings.push_back(
+        "AMC files state no frame rate: 120 frames a second are taken, as in most of CMU; give "
+        "another with --fps");
+  }
   raw.warnings.insert(raw.warnings.begin(), acclaim.warnings.begin(), acclaim.warnings.end());
   return raw;
 }

@@ -102,11 +102,10 @@ TEST(Acclaim, JointsByHand) {
   EXPECT_EQ(source.joints[1].name, "thigh");
   EXPECT_EQ(source.joints[2].parent, 1);
   EXPECT_EQ(source.frames, 2);
-  EXPECT_EQ(source.fps, 120);
+  EXPECT_EQ(source.fps, 0);
   EXPECT_NEAR(*source.metres_per_unit, 0.056444, 1e-6);
   EXPECT_EQ(*source.joints[2].end_site, Vec3(0, -6, 0));
-  ASSERT_EQ(read.warnings.size(), 1u);
-  EXPECT_NE(read.warnings[0].find("--fps"), std::string::npos);
+  EXPECT_TRUE(read.warnings.empty());
   const auto first = rig::world_positions(source, 0);
   expect_at(first[0], 1, 2, 3);
   expect_at(first[1], 1, 2, 3);  // the thigh begins where the root ends
