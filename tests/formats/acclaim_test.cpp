@@ -84,7 +84,7 @@ std::string refusal(const std::string& asf, const std::string& amc) {
   return "";
 }
 
-std::string with(std::string text, const std::string& from, const std::string& to) {
+std::string text_with(std::string text, const std::string& from, const std::string& to) {
   EXPECT_NE(text.find(from), std::string::npos) << from;
   return text.replace(text.find(from), from.size(), to);
 }
@@ -119,17 +119,17 @@ TEST(Acclaim, JointsByHand) {
 TEST(Acclaim, AnglesTurnAboutTheAxesOfTheBone) {
   // Z of the bone is Z of the body: a quarter turn brings -Y to +X.
   const auto joints =
-      rig::world_positions(parse(kAsf, with(kAmc, "thigh 0 0 0", "thigh 0 0 90")).source, 0);
+      rig::world_positions(parse(kAsf, text_with(kAmc, "thigh 0 0 0", "thigh 0 0 90")).source, 0);
   expect_at(joints[2], 8, 2, 3);
   // Y of the bone is -X of the body.
   const auto other =
-      rig::world_positions(parse(kAsf, with(kAmc, "thigh 0 0 0", "thigh 0 90 0")).source, 0);
+      rig::world_positions(parse(kAsf, text_with(kAmc, "thigh 0 0 0", "thigh 0 90 0")).source, 0);
   expect_at(other[2], 1, 2, 10);
 }
 
 TEST(Acclaim, RadiansRatesAndLineEnds) {
-  std::string amc = with(kAmc, ":DEGREES", ":RADIANS\n:SAMPLES-PER-SECOND 60");
-  amc = with(amc, "thigh 0 0 0", "thigh 0 0 1.5707963267948966");
+  std::string amc = text_with(kAmc, ":DEGREES", ":RADIANS\n:SAMPLES-PER-SECOND 60");
+  amc = text_with(amc, "thigh 0 0 0", "thigh 0 0 1.5707963267948966");
   std::string windows;
   for (const char c : amc) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
   const formats::AcclaimMotion read = parse("\xEF\xBB\xBF" + kAsf, windows);
@@ -142,19 +142,24 @@ TEST(Acclaim, FaultsAreNamedWithTheirLine) {
   const std::pair<std::string, const char*> cases[] = {
       {refusal(kAsf, ""), "no frames"},
       {refusal(kAsf, "thigh 1 2 3\n"), "m.amc:1: expected the number of a frame"},
-      {refusal(kAsf, with(kAmc, "shin 0\n", "")), "m.amc:7: the frame before this line has no"},
+      {refusal(kAsf, text_with(kAmc, "shin 0\n", "")),
+       "m.amc:7: the frame before this line has no"},
       {refusal(kAsf, kAmc.substr(0, kAmc.find("shin 8"))), "no values of \"shin\""},
-      {refusal(kAsf, with(kAmc, "shin 0", "shin 0 0")), "m.amc:7: \"shin\" has 2 values"},
-      {refusal(kAsf, with(kAmc, "shin 0", "shin nan")), "m.amc:7: shin needs a finite number"},
-      {refusal(kAsf, with(kAmc, "shin 0", "tail 0")), "m.amc:7: the skeleton has no bone \"tail\""},
-      {refusal(kAsf, with(kAmc, "shin 0", "thigh 0 0 0")), "m.amc:7: \"thigh\" is there twice"},
+      {refusal(kAsf, text_with(kAmc, "shin 0", "shin 0 0")), "m.amc:7: \"shin\" has 2 values"},
+      {refusal(kAsf, text_with(kAmc, "shin 0", "shin nan")), "m.amc:7: shin needs a finite number"},
+      {refusal(kAsf, text_with(kAmc, "shin 0", "tail 0")),
+       "m.amc:7: the skeleton has no bone \"tail\""},
+      {refusal(kAsf, text_with(kAmc, "shin 0", "thigh 0 0 0")),
+       "m.amc:7: \"thigh\" is there twice"},
       {refusal("", kAmc), "no bones"},
-      {refusal(with(kAsf, "dof rx\n", "dof wx\n"), kAmc), "s.asf:33: unknown degree of freedom"},
-      {refusal(with(kAsf, "    thigh shin\n", ""), kAmc), "\"shin\" hangs on no other"},
-      {refusal(with(kAsf, "thigh shin", "thigh fin"), kAmc), "s.asf:38: there is no bone \"fin\""},
-      {refusal(with(kAsf, "root thigh\n", "shin thigh\n"), kAmc), "hangs on no other"},
-      {refusal(with(kAsf, "name shin", "name thigh"), kAmc), "two bones are named"},
-      {refusal(with(kAsf, "XYZ\n    dof rx ry", "XQZ\n    dof rx ry"), kAmc), "order of axes"},
+      {refusal(text_with(kAsf, "dof rx\n", "dof wx\n"), kAmc),
+       "s.asf:33: unknown degree of freedom"},
+      {refusal(text_with(kAsf, "    thigh shin\n", ""), kAmc), "\"shin\" hangs on no other"},
+      {refusal(text_with(kAsf, "thigh shin", "thigh fin"), kAmc),
+       "s.asf:38: there is no bone \"fin\""},
+      {refusal(text_with(kAsf, "root thigh\n", "shin thigh\n"), kAmc), "hangs on no other"},
+      {refusal(text_with(kAsf, "name shin", "name thigh"), kAmc), "two bones are named"},
+      {refusal(text_with(kAsf, "XYZ\n    dof rx ry", "XQZ\n    dof rx ry"), kAmc), "order of axes"},
       {refusal(kAsf.substr(0, kAsf.find("name shin")), kAmc), "truncated"},
   };
   for (const auto& [text, part] : cases) {

@@ -62,7 +62,7 @@ std::string npz_refusal(const std::string& path, const MotionFileOptions& option
   return "";
 }
 
-bool mentions(const std::vector<std::string>& warnings, const std::string& part) {
+bool npz_mentions(const std::vector<std::string>& warnings, const std::string& part) {
   for (const std::string& warning : warnings) {
     if (warning.find(part) != std::string::npos) return true;
   }
@@ -146,7 +146,7 @@ TEST(Npz, ArraysOfJoints) {
     const std::string path = write_zip("joints.npz", {{name, npy({30, 22, 3}, motion.positions)}});
     const LoadedMotion loaded = load_motion(path, as_it_is);
     EXPECT_EQ(largest_difference(loaded.motion, motion), 0) << name;
-    EXPECT_TRUE(mentions(loaded.warnings, "no frame rate")) << name;
+    EXPECT_TRUE(npz_mentions(loaded.warnings, "no frame rate")) << name;
   }
   const std::string path = write_zip(
       "rate.npz", {{"joints.npy", npy({30, 22, 3}, motion.positions)}, {"fps.npy", npy({}, {10})}});
@@ -195,7 +195,7 @@ TEST(Amass, BothSpellingsAndAllBodiesReadTheSame) {
   EXPECT_EQ(first.motion.frames, 14);  // 39 steps at 60 fps
   EXPECT_EQ(first.up_axis, 'Z');
   EXPECT_EQ(first.metres_per_unit, 1);
-  EXPECT_TRUE(mentions(first.warnings, "betas"));
+  EXPECT_TRUE(npz_mentions(first.warnings, "betas"));
   for (const std::string& path : paths) {
     EXPECT_LT(largest_difference(load_motion(path).motion, first.motion), 1e-5) << path;
   }
@@ -234,10 +234,10 @@ TEST(Amass, WhatIsMissingOrWrongIsNamed) {
   const std::string poses = data.poses_npy(), trans = data.trans_npy(), rate = npy({}, {60});
   const LoadedMotion unrated =
       load_motion(write_zip("a.npz", {{"poses.npy", poses}, {"trans.npy", trans}}));
-  EXPECT_TRUE(mentions(unrated.warnings, "no frame rate"));
+  EXPECT_TRUE(npz_mentions(unrated.warnings, "no frame rate"));
   const LoadedMotion still =
       load_motion(write_zip("b.npz", {{"poses.npy", poses}, {"mocap_framerate.npy", rate}}));
-  EXPECT_TRUE(mentions(still.warnings, "no array trans"));
+  EXPECT_TRUE(npz_mentions(still.warnings, "no array trans"));
   EXPECT_NE(npz_refusal(write_zip("c.npz", {{"poses.npy", npy({40, 63}, std::vector<float>(2520))},
                                             {"mocap_framerate.npy", rate}}))
                 .find("66, 72, 156 or 165"),
@@ -256,7 +256,7 @@ TEST(Amass, WhatIsMissingOrWrongIsNamed) {
                                       {"trans.npy", npy({30, 3}, std::vector<float>(90))},
                                       {"mocap_frame_rate.npy", rate}}));
   EXPECT_EQ(zero.up_axis, 'Y');
-  EXPECT_TRUE(mentions(zero.warnings, "--up-axis Z"));
+  EXPECT_TRUE(npz_mentions(zero.warnings, "--up-axis Z"));
 }
 
 }  // namespace remomask
