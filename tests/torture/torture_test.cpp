@@ -195,7 +195,7 @@ TEST_P(Torture, FullDisksLoseNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, Torture, testing::ValuesIn(scenarios()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& scenario) { return scenario.param.name; });
 
 }  // namespace
 }  // namespace remomask
