@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "db/schema.h"
 #include "db/sqlite.h"
 
 namespace remomask::db {
@@ -9,8 +10,9 @@ namespace remomask::db {
 namespace {
 
 bool is_unused(const SqliteConnection& connection) {
-  return connection.integer("SELECT CAST(value AS INTEGER) FROM fact WHERE key = 'generation'") ==
-         0;
+  return is_empty_database(connection) ||
+         connection.integer("SELECT CAST(value AS INTEGER) FROM fact WHERE key = 'generation'") ==
+             0;
 }
 
 /// Removes the file unless something was stored in it, or another program has it
@@ -30,13 +32,23 @@ void remove_when_unused(const std::string& path) {
 }  // namespace
 
 StoringDatabase::StoringDatabase(const std::string& path)
-    : path_(path),
-      is_new_(!std::filesystem::exists(path)),
-      database_(std::in_place, path, is_new_ ? OpenMode::create : OpenMode::read_write) {}
+    : path_(path), is_new_(!std::filesystem::exists(path)) {
+  try {
+    // A file without tables is what a process leaves that was killed while it made them.
+    database_.emplace(path, OpenMode::create);
+  } catch (...) {
+    take_away_unused();
+    throw;
+  }
+}
 
 StoringDatabase::~StoringDatabase() {
   database_.reset();
-  if (!is_new_) return;
+  take_away_unused();
+}
+
+void StoringDatabase::take_away_unused() const {
+  if (!is_new_ || !std::filesystem::exists(path_)) return;
   try {
     remove_when_unused(path_);
   } catch (const std::exception&) {

@@ -20,6 +20,8 @@ class StoringDatabase {
   Database& operator*() { return *database_; }
 
  private:
+  void take_away_unused() const;
+
   std::string path_;
   bool is_new_;
   std::optional<Database> database_;

@@ -82,7 +82,7 @@ void register_export(CLI::App& group, Program& program) {
     exchange::ExportOptions writing;
     writing.resume = options->resume;
     writing.extension = "." + options->format;
-    writing.writing = options->writing.chosen(writing.extension);
+    writing.writing = options->writing.chosen("clip" + writing.extension);
     const db::Database database(options->database, db::OpenMode::read_only);
     const auto ids = options->selection.ids(database);
     exchange::export_clips(database, ids, options->folder, writing, program.monitor());
