@@ -75,6 +75,7 @@ nlohmann::json export_plan(const db::Database& database, const std::vector<int64
           {"in_place", writing.in_place},
           {"loop", writing.loop},
           {"own_proportions", writing.own_proportions},
+          {"common_skeleton", writing.common_skeleton},
           {"root_motion", writing.root_motion}};
 }
 

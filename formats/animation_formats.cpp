@@ -33,7 +33,10 @@ Animations prepare(const std::vector<WritingJob>& jobs, JointNames names) {
   result.extras.resize(jobs.size());
   for (size_t i = 0; i < jobs.size(); ++i) {
     const WritingJob& job = jobs[i];
-    rig::RotationsToWrite ready = rig::rotations_to_write(job.motion, job.options, names);
+    MotionWriteOptions writing = job.options;
+    // Animations of one file share its skeleton.
+    writing.common_skeleton |= jobs.size() > 1;
+    rig::RotationsToWrite ready = rig::rotations_to_write(job.motion, writing, names);
     if (i == 0) result.written = ready.written;
     // Contacts are those of the frames in the file.
     result.extras[i] = {{"fps", ready.motion.fps},

@@ -90,6 +90,7 @@ void check_write_options(const MotionFormat& format, const MotionWriteOptions& o
   refuse(options.loop, format.rotations, "--loop");
   refuse(options.root_motion, format.rotations, "--root-motion");
   refuse(options.own_proportions, format.rotations, "--own-proportions");
+  refuse(options.common_skeleton, format.rotations, "--common-skeleton");
   const bool figure = !options.character.empty();
   refuse(figure, format.extension == ".bvh" || format.extension == ".glb", "--character");
   refuse(figure && options.names, false, "--names together with --character");

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "kinematics/pose_fit.h"
 #include "motion/canonical.h"
@@ -32,6 +34,24 @@ bool has_these_bones(const Motion& motion, const rig::RestSkeleton& rest) {
   const std::vector<double> lengths = kinematics::mean_bone_lengths(motion, humanml_skeleton());
   for (size_t j = 1; j < rig::kRigJoints; ++j) {
     if (std::abs(lengths[j] - rest.offsets[j].norm()) > kTolerated) return false;
+  }
+  return true;
+}
+
+/// Whether all bones, and the triangles of pelvis and chest, keep their lengths over time.
+bool is_rigid(const Motion& motion) {
+  constexpr double kTolerated = 0.001;  // m
+  const std::vector<int>& parents = humanml_skeleton().parents;
+  std::vector<std::pair<int, int>> spans = {{1, 2}, {1, 3}, {2, 3}, {12, 13}, {12, 14}, {13, 14}};
+  for (int j = 1; j < static_cast<int>(rig::kRigJoints); ++j) {
+    spans.emplace_back(j, parents[static_cast<size_t>(j)]);
+  }
+  for (const auto& [a, b] : spans) {
+    const double length = (joint_position(motion, 0, a) - joint_position(motion, 0, b)).norm();
+    for (int t = 1; t < motion.frames; ++t) {
+      const double now = (joint_position(motion, t, a) - joint_position(motion, t, b)).norm();
+      if (!(std::abs(now - length) < kTolerated)) return false;
+    }
   }
   return true;
 }
@@ -89,7 +109,11 @@ JointRotations solve_rotations(const Motion& motion, const RotationOptions& opti
   require_solvable(motion);
   if (options.own_proportions) return solve_on(rig::performer_rest(motion), motion);
   const rig::RestSkeleton& rest = rig::human_rest();
-  return solve_on(rest, has_these_bones(motion, rest) ? motion : with_human_bones(motion));
+  const bool fits = has_these_bones(motion, rest);
+  if (options.keep_rigid && fits && is_rigid(motion)) {
+    return solve_on(rig::performer_rest(motion), motion);
+  }
+  return solve_on(rest, fits ? motion : with_human_bones(motion));
 }
 
 }  // namespace remomask

@@ -9,7 +9,8 @@ namespace remomask::rig {
 RotationsToWrite rotations_to_write(const Motion& motion, const MotionWriteOptions& options,
                                     JointNames names) {
   RotationsToWrite result;
-  JointRotations solved = solve_rotations(motion, {options.own_proportions});
+  JointRotations solved = solve_rotations(
+      motion, {.own_proportions = options.own_proportions, .keep_rigid = !options.common_skeleton});
   if (options.in_place) keep_in_place(solved);
   if (options.loop) result.written.loop = close_loop(solved);
   if (options.fps) solved = resample_rotations(solved, *options.fps);

@@ -77,6 +77,7 @@ void register_export(CLI::App& group, Program& program) {
                    "npy (default) keeps the exact positions, the others open in other programs")
       ->check(CLI::IsMember(known));
   options->writing.add(*command);
+  options->writing.add_own_proportions(*command);
   command->add_flag("--resume", options->resume, "go on with an export that was stopped");
   command->callback([options, &program] {
     exchange::ExportOptions writing;

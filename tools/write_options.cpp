@@ -72,6 +72,11 @@ void WriteOptions::add_own_proportions(CLI::App& command) {
       .add_flag("--own-proportions", own_proportions_,
                 "keep the performer's bone lengths; default: those of HumanML3D")
       ->group("Written file");
+  command
+      .add_flag("--common-skeleton", common_skeleton_,
+                "the same skeleton in every file, also for motions whose own pelvis and chest are "
+                "rigid and would be kept")
+      ->group("Written file");
 }
 
 MotionWriteOptions WriteOptions::chosen(const std::string& output) const {
@@ -85,6 +90,7 @@ MotionWriteOptions WriteOptions::chosen(const std::string& output) const {
   options.loop = loop_;
   options.root_motion = root_motion_;
   options.own_proportions = own_proportions_;
+  options.common_skeleton = common_skeleton_;
   options.npz = npz_ == "amass" ? NpzLayout::amass : NpzLayout::motion;
   options.features = features_;
   options.character = character_;

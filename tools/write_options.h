@@ -15,7 +15,7 @@ class WriteOptions {
   /// `rate`: name of the option for the frame rate. A command that reads motions needs "--fps" for
   /// what it reads.
   void add(CLI::App& command, const std::string& rate = "--fps,--output-fps");
-  /// --own-proportions, for commands whose motions come from performers.
+  /// --own-proportions and --common-skeleton, for commands whose motions come from performers.
   void add_own_proportions(CLI::App& command);
 
   /// Throws Error for a choice that the format of `output` has no use for.
@@ -25,6 +25,7 @@ class WriteOptions {
   std::string names_, units_, npz_, character_, character_map_;
   double fps_ = 0;
   bool in_place_ = false, loop_ = false, root_motion_ = false, own_proportions_ = false;
+  bool common_skeleton_ = false;
   bool features_ = false;
 };
 

@@ -67,6 +67,9 @@ struct MotionWriteOptions {
   bool loop = false;
   bool root_motion = false;      ///< the heading lies on the joint "Root", too, not on the hips
   bool own_proportions = false;  ///< as in RotationOptions
+  /// All motions get the same skeleton. Otherwise one that is rigid keeps its shapes of pelvis and
+  /// chest (RotationOptions::keep_rigid), unless a file holds several motions.
+  bool common_skeleton = false;
   NpzLayout npz = NpzLayout::motion;
   bool features = false;  ///< .npy: the 263 features of HumanML3D instead of positions
   /// A figure of the user's own (.glb, .gltf, .vrm, .bvh, .fbx) that the motion is put onto: a .glb

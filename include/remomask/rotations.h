@@ -37,6 +37,10 @@ struct RotationOptions {
   /// false: every motion is put onto the same skeleton, that of HumanML3D. true: bones are as long
   /// as in the motion.
   bool own_proportions = false;
+  /// A motion whose bones, pelvis and chest are rigid to a millimetre, as one that came from a file
+  /// with a skeleton, keeps its shapes of pelvis and chest, so that every joint stays where it was.
+  /// Generated motions are not rigid: they are always put onto the one skeleton.
+  bool keep_rigid = false;
 };
 
 /// Puts a motion of 22 joints onto a rigid skeleton and solves the rotations. Throws Error for
