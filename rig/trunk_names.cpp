@@ -124,6 +124,12 @@ class TrunkFinder {
     // Neither neck nor head: what goes on above the arms, the last joint being the head.
     if (arms_ < 0) return -1;
     std::vector<int> above;
+    // In a flat list nothing goes on; Rigify numbers the spine up to the head.
+    const std::vector<int> spine = named(BodyPart::spine);
+    if (arms_ == legs_ && spine.size() > 3) {
+      necks = {spine[spine.size() - 2]};
+      return spine.back();
+    }
     for (int joint = continuation(arms_); joint >= 0; joint = continuation(joint)) {
       above.push_back(joint);
     }
@@ -155,7 +161,8 @@ class TrunkFinder {
       }
     }
     for (const int joint : between) {
-      if (!name(joint).helper && !is_limb(joint) && joint != body_.pelvis) {
+      if (!name(joint).helper && !is_limb(joint) && joint != body_.pelvis && joint != body_.neck &&
+          joint != body_.head) {
         body_.spine.push_back(joint);
       }
     }

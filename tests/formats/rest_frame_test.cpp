@@ -64,15 +64,16 @@ TEST(RestFrame, IsNotSeenWhereThereIsNone) {
 TEST(RestFrame, ThatBlendsIntoTheMotionIsLeftOutWithTheBlend) {
   Motion rest;
   const Motion joined = walker_after_rest_pose(60, rest);
-  Motion blended(64, 22);  // the rest pose, three frames between, the walker
+  Motion blended(64, 22);  // the rest pose, three frames between, a person who stands
   for (int t = 0; t < 4; ++t) {
     for (int j = 0; j < 22; ++j) {
       const Vec3 from = joint_position(rest, 0, j), to = joint_position(joined, 1, j);
       set_joint_position(blended, t, j, from + (to - from) * (t / 4.));
     }
   }
-  std::copy(joined.positions.begin() + 66, joined.positions.end(),
-            blended.positions.begin() + 4 * 66);
+  for (int t = 4; t < 64; ++t) {
+    std::copy(joined.at(1, 0), joined.at(1, 0) + 66, blended.at(t, 0));
+  }
   EXPECT_EQ(formats::count_rest_frames(blended, rest, 120), 4);
 }
 

@@ -82,6 +82,36 @@ TEST(SkeletonMatch, DoesNotNeedOffsetsOrAnOrder) {
   }
 }
 
+TEST(SkeletonMatch, TakesFlatListsOfBones) {
+  for (RigNames names : known_rigs()) {
+    if (names.program != "Rigify, deforming bones" && names.program != "Unreal" &&
+        names.program != "SMPL") {
+      continue;
+    }
+    SCOPED_TRACE(names.program);
+    names.roots = {"Armature"};
+    names.others.clear();
+    BuiltRig built = build_rig(names);
+    const std::vector<Vec3> world = world_positions(built.motion, -1);
+    for (size_t j = 1; j < world.size(); ++j) {
+      built.motion.joints[j].parent = 0;
+      built.motion.joints[j].offset = world[j];
+      for (int axis = 0; axis < 3; ++axis) {
+        built.motion.translations[j * 3 + static_cast<size_t>(axis)] =
+            static_cast<float>(world[j][axis]);
+      }
+    }
+    const rig::SkeletonMatch match = rig::match_skeleton(view_of(built.motion));
+    ASSERT_TRUE(match.map) << match.objection << testing::PrintToString(match.missing);
+    Motion pose(1, 22);
+    rig::MappedSource(built.motion, *match.map).positions(0, pose.at(0, 0));
+    for (const auto& [name, truth] : built.truth) {
+      EXPECT_LT((joint_position(pose, 0, joint_of_ours(name)) - truth).norm(), 5) << name;
+    }
+    EXPECT_NEAR(joint_position(pose, 0, 0).y(), 97, 5);
+  }
+}
+
 TEST(SkeletonMatch, ReadsNames) {
   const auto words = [](const char* name) { return rig::words_of_name(name); };
   using Words = std::vector<std::string>;
