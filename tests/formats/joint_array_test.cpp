@@ -121,7 +121,7 @@ TEST(JointArray, RefusesOtherShapesAndNamesThoseItReads) {
 TEST(JointArray, PoseParametersAreNotTakenForPositions) {
   formats::NpyArray pose{{20, 72}, std::vector<float>(20 * 72)};
   for (size_t i = 0; i < pose.values.size(); ++i) {
-    pose.values[i] = 0.3f * static_cast<float>(std::sin(static_cast<double>(i)));
+    pose.values[i] = 0.3f * static_cast<float>(std::sin(0.37 * static_cast<double>(i * i)));
   }
   EXPECT_NE(refusal_of(pose).find("pose parameters"), std::string::npos) << refusal_of(pose);
 }
