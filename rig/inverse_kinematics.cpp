@@ -82,26 +82,13 @@ class PoseSolver {
     auto& world = world_[t];
     world[0] = triangle(t, 0, 1, 2, 3);
     world[9] = triangle(t, 9, 13, 14, 12);
-    world[3] = aim(t, world[0], 3, 6);
-    world[6] = aim(t, world[3], 6, 9);
-    spread_twist(world);
+    // Between pelvis and chest the spine turns by thirds, before its bones take their directions.
+    world[3] = aim(t, world[0].slerp(1 / 3.0, world[9]), 3, 6);
+    world[6] = aim(t, world[0].slerp(2 / 3.0, world[9]), 6, 9);
     world[12] = aim(t, world[9], 12, 15);
     world[15] = world[12];
     world[13] = aim(t, world[9], 13, 16);
     world[14] = aim(t, world[9], 14, 17);
-  }
-
-  /// Turns the two spine bones about themselves by a third and two thirds of the twist between
-  /// pelvis and chest; no joint moves.
-  void spread_twist(std::array<Quat, kRigJoints>& world) {
-    const Quat relative = world[6].conjugate() * world[9];
-    const Vec3 axis = rest_.offsets[9].normalized();
-    double twist = 2 * std::atan2(relative.vec().dot(axis), relative.w());
-    // Beyond half a turn, which only broken motions reach, the twist stays on its side.
-    twist = twist_before_ + std::remainder(twist - twist_before_, 2 * M_PI);
-    twist_before_ = std::clamp(twist, -M_PI, M_PI);
-    world[3] = world[3] * Quat(Eigen::AngleAxisd(twist / 3, rest_.offsets[6].normalized()));
-    world[6] = world[6] * Quat(Eigen::AngleAxisd(twist * 2 / 3, axis));
   }
 
   void solve_limb(const Limb& limb, double fps) {
@@ -146,7 +133,6 @@ class PoseSolver {
   const std::vector<Pose>& poses_;
   const RestSkeleton& rest_;
   WorldRotations world_;
-  double twist_before_ = 0;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ constexpr double kRodTolerance = 1e-7;  // m
 constexpr double kLargestMove = 0.05;   // m in a round, while far from the constraints
 constexpr double kTolerated = 0.01;     // m; joints farther away gain weight
 constexpr double kMostGain = 8;
-constexpr double kFootWeight = 100, kWristWeight = 4;
+constexpr double kFootWeight = 100, kWristWeight = 4, kSpineWeight = 3;
 
 using Weights = std::array<double, kRigJoints>;
 
@@ -25,6 +25,8 @@ Weights base_weights() {
   weights.fill(1);
   for (const size_t foot : {7, 8, 10, 11}) weights[foot] = kFootWeight;
   for (const size_t wrist : {20, 21}) weights[wrist] = kWristWeight;
+  // The short bone between these would fold before it moves a misfit chest.
+  for (const size_t spine : {6, 9}) weights[spine] = kSpineWeight;
   return weights;
 }
 

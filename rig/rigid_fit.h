@@ -11,9 +11,9 @@ namespace remomask::rig {
 /// Pelvis and chest of captured and generated motions deform, and so the joints of no rigid
 /// skeleton meet them. The fit minimises the weighted squares of the distances, over all joints at
 /// once, under the constraints that bones keep their lengths and that pelvis and chest keep their
-/// shapes. Feet weigh so much that they stay in place, wrists weigh more than the trunk, and joints
-/// that are left far from their place weigh more from round to round. It is a closed function of
-/// one frame: what moves smoothly is fitted smoothly.
+/// shapes. Feet weigh so much that they stay in place, wrists and spine weigh more than the rest,
+/// and joints that are left far from their place weigh more from round to round. It is a closed
+/// function of one frame: what moves smoothly is fitted smoothly.
 class RigidFit {
  public:
   explicit RigidFit(const RestSkeleton& rest);
