@@ -11,6 +11,7 @@
 #include "formats/gltf_writer.h"
 #include "formats/npy.h"
 #include "formats/npz_writer.h"
+#include "formats/sidecar.h"
 #include "motion/features.h"
 #include "remomask/error.h"
 #include "rig/forward_kinematics.h"
@@ -107,7 +108,7 @@ WrittenMotion write_together(const std::string& path, const std::vector<WritingJ
   require_room_for_several(path);
   const WrittenFile file = lower_extension(path) == ".glb" ? glb(jobs) : fbx(jobs);
   std::error_code ignored;
-  std::filesystem::remove(path + ".json", ignored);
+  std::filesystem::remove(sidecar_path(path), ignored);
   write_file_atomically(path, file.bytes);
   return file.written;
 }

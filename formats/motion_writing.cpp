@@ -118,8 +118,9 @@ WrittenMotion write_motion(const std::string& path, const Motion& motion,
   }
   const MotionFormat& format = written_format(path);
   check_write_options(format, options);
+  const WritingJob job{motion, options, sidecar, std::filesystem::path(path).stem().string()};
   const WrittenFile file =
-      format.write({motion, options, sidecar, std::filesystem::path(path).stem().string()});
+      options.character.empty() ? format.write(job) : write_on_character(job, format.extension);
   std::error_code ignored;
   std::filesystem::remove(sidecar_path(path), ignored);
   write_file_atomically(path, file.bytes);

@@ -88,7 +88,7 @@ class Retargeter {
       poses.push_back(turned(sources.back()));
     }
     for (size_t side = 0; side < 2; ++side) {
-      const std::vector<Vec3> shifts = still_toes(poses, contacts, side);
+      const std::vector<Vec3> shifts = still_toes(poses, sources, contacts, side);
       for (size_t t = 0; t < poses.size(); ++t) {
         place_foot(poses[t], sources[t], kLegs[side], shifts[t]);
       }
@@ -210,12 +210,18 @@ class Retargeter {
     return goal - turn * (rest_.rotations[pelvis].conjugate() * hips);
   }
 
-  /// What each frame's foot moves over the ground so that its toe keeps still while it stands. The
-  /// correction fades in and out around a contact.
+  /// What each frame's foot moves over the ground so that its toe, while it stands, moves as the
+  /// source's does: not at all where that stands still. The correction fades in and out around a
+  /// contact.
   std::vector<Vec3> still_toes(const std::vector<SkeletonPose>& poses,
+                               const std::vector<WorldPose>& sources,
                                const kinematics::FootContacts& contacts, size_t side) const {
-    const int toe = body_[kLegs[side].tip] >= 0 ? body_[kLegs[side].tip] : body_[kLegs[side].end];
+    const size_t part = body_[kLegs[side].tip] >= 0 ? kLegs[side].tip : kLegs[side].end;
     const Vec3 vertical = axes_ * Vec3::UnitY();
+    const auto drift = [&](size_t t) {
+      return Vec3(poses[t].positions[static_cast<size_t>(body_[part])] -
+                  axes_ * (scale_ * sources[t].positions[part]));
+    };
     std::vector<Vec3> shifts(poses.size(), Vec3::Zero());
     std::vector<double> weights(poses.size(), 0);
     constexpr size_t kFade = 4;
@@ -224,7 +230,7 @@ class Retargeter {
       size_t end = first;
       Vec3 mean = Vec3::Zero();
       while (end < frames && contacts[end][side]) {
-        mean += poses[end++].positions[static_cast<size_t>(toe)];
+        mean += drift(end++);
       }
       if (end == first) {
         ++first;
@@ -232,7 +238,7 @@ class Retargeter {
       }
       mean /= static_cast<double>(end - first);
       const auto shift_at = [&](size_t t) {
-        const Vec3 shift = mean - poses[t].positions[static_cast<size_t>(toe)];
+        const Vec3 shift = mean - drift(t);
         return Vec3(shift - vertical * shift.dot(vertical));
       };
       for (size_t t = first; t < end; ++t) shifts[t] = shift_at(t);

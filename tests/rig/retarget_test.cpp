@@ -89,7 +89,7 @@ double degrees_between(const Vec3& a, const Vec3& b) {
 struct Fit {
   double worst_direction = 0;  ///< degrees, of arms and legs
   double worst_ankle = 0;      ///< metres, of its height over the floor
-  double worst_slide = 0;      ///< metres that a standing toe moves between two frames
+  double worst_slide = 0;      ///< metres a frame that a standing toe moves unlike the source's
 };
 
 Fit fit_of(const Motion& motion, const RigShape& shape) {
@@ -128,7 +128,8 @@ Fit fit_of(const Motion& motion, const RigShape& shape) {
     }
     for (const size_t side : {0, 1}) {
       if (t == 0 || !contacts[t][side] || !contacts[t - 1][side]) continue;
-      Vec3 slide = places[body[10 + side]] - before[body[10 + side]];
+      const Vec3 own_slide = ours[10 + side] - joint_position(placed, t - 1, 10 + side);
+      Vec3 slide = places[body[10 + side]] - before[body[10 + side]] - leg / own_leg * own_slide;
       slide.y() = 0;
       fit.worst_slide = std::max(fit.worst_slide, slide.norm() / shape.units_per_metre);
     }
