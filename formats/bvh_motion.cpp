@@ -24,6 +24,19 @@ Vec3 euler_zyx(const Quat& q) {
   return {std::atan2(m(1, 0), m(0, 0)), y, std::atan2(m(2, 1), m(2, 2))};
 }
 
+/// Angles y, x, z of R = Ry Rx Rz in radians: a body can face anywhere without a gimbal lock, which
+/// lies where it lies on its front or back.
+Vec3 euler_yxz(const Quat& q) {
+  const Eigen::Matrix3d m = q.toRotationMatrix();
+  const double x = std::asin(std::clamp(-m(1, 2), -1.0, 1.0));
+  return {std::atan2(m(0, 2), m(2, 2)), x, std::atan2(m(1, 0), m(1, 1))};
+}
+
+/// The heading is on the root, or on the hips below it.
+bool carries_heading(const JointRotations& motion, int joint) {
+  return joint == 0 || motion.parents[static_cast<size_t>(joint)] == 0;
+}
+
 Vec3 nearest_turns(Vec3 angles, const Vec3& before) {
   for (int i = 0; i < 3; ++i) {
     angles[i] = before[i] + std::remainder(angles[i] - before[i], 2 * M_PI);
@@ -58,7 +71,8 @@ Bvh rotations_to_bvh(const JointRotations& motion, double units_per_metre) {
     joint.offset = rig::to_vec(motion.rest_offsets[at]) * units_per_metre;
     joint.first_channel = bvh.channels;
     if (j == 0) joint.channels = {0, 1, 2};
-    joint.channels.insert(joint.channels.end(), {5, 4, 3});
+    const std::initializer_list<BvhChannel> turns = {5, 4, 3}, heading_first = {4, 3, 5};
+    joint.channels.insert(joint.channels.end(), carries_heading(motion, j) ? heading_first : turns);
     const Vec3 tip = rig::to_vec(motion.tips[at]);
     if (tip.squaredNorm() > 0) joint.end_site = Vec3(tip * units_per_metre);
     bvh.channels += static_cast<int>(joint.channels.size());
@@ -74,7 +88,9 @@ Bvh rotations_to_bvh(const JointRotations& motion, double units_per_metre) {
         }
       }
       Vec3& angles = before[static_cast<size_t>(j)];
-      angles = unwrapped_angles(euler_zyx(rig::to_quat(motion.rotation(t, j))), angles);
+      const Quat rotation = rig::to_quat(motion.rotation(t, j));
+      angles = unwrapped_angles(
+          carries_heading(motion, j) ? euler_yxz(rotation) : euler_zyx(rotation), angles);
       for (int i = 0; i < 3; ++i) {
         bvh.values.push_back(static_cast<float>(angles[i] * 180 / M_PI));
       }

@@ -43,7 +43,10 @@ JointRotations without_root_joint(const JointRotations& motion) {
 rig::SourceMotion put_onto(const rig::SourceMotion& rig, const WritingJob& job,
                            WrittenMotion& written) {
   const std::string& path = job.options.character;
-  const rig::RotationsToWrite ready = rig::rotations_to_write(job.motion, job.options);
+  MotionWriteOptions writing = job.options;
+  // The figure has a pelvis and a chest of its own.
+  writing.common_skeleton = true;
+  const rig::RotationsToWrite ready = rig::rotations_to_write(job.motion, writing);
   written.frames = ready.written.frames;
   written.fps = ready.written.fps;
   written.loop = ready.written.loop;

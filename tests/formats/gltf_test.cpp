@@ -41,7 +41,7 @@ std::string vrm_name(int joint) {
 
 /// The motion as it is written: on the rigid skeleton.
 Motion on_its_skeleton(const Motion& motion) {
-  return rig::joint_positions(solve_rotations(motion));
+  return rig::joint_positions(solve_rotations(motion, {.keep_rigid = true}));
 }
 
 /// Greatest distance between the joints of a file's motion and those that were written.

@@ -38,7 +38,8 @@ Motion canonical_walker(int frames) {
 
 /// The same on the rigid skeleton, which rotations give back exactly.
 Motion rigid_walker(int frames) {
-  return rig::joint_positions(solve_rotations(canonical_walker(frames)));
+  return motion::canonicalize(rig::joint_positions(solve_rotations(canonical_walker(frames))),
+                              humanml_skeleton());
 }
 
 formats::Bvh bvh_of(const Motion& motion) {

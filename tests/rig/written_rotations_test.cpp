@@ -34,7 +34,7 @@ double heading(const Quat& rotation) {
 
 TEST(WrittenRotations, OnlyTheRootMovesAndItLiesOnTheGround) {
   const Motion motion = make_walker(40, [](int t) { return 0.04 * t; });
-  const JointRotations solved = solve_rotations(motion);
+  const JointRotations solved = solve_rotations(motion, {.keep_rigid = true});
   const JointRotations written = rig::rotations_to_write(motion, {}).motion;
   ASSERT_EQ(written.joints(), 23);
   EXPECT_EQ(written.joint_names[0], "Root");
