@@ -6,9 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
-#include "formats/fbx_writer.h"
 #include "formats/foot_contacts.h"
-#include "formats/gltf_writer.h"
 #include "formats/npy.h"
 #include "formats/npz_writer.h"
 #include "formats/sidecar.h"
@@ -16,6 +14,8 @@
 #include "remomask/error.h"
 #include "rig/forward_kinematics.h"
 #include "rig/written_rotations.h"
+#include "scenes/fbx_writer.h"
+#include "scenes/gltf_writer.h"
 
 namespace remomask::formats {
 
@@ -23,7 +23,7 @@ namespace {
 
 /// Animations as they go into a file, with what save_motion() says about the first.
 struct Animations {
-  std::vector<GltfAnimation> list;
+  std::vector<scenes::GltfAnimation> list;
   std::vector<nlohmann::json> extras;
   WrittenMotion written;
 };
@@ -51,19 +51,20 @@ Animations prepare(const std::vector<WritingJob>& jobs, JointNames names) {
 
 WrittenFile glb(const std::vector<WritingJob>& jobs) {
   const Animations ready = prepare(jobs, JointNames::mixamo);
-  GltfOptions options;
+  scenes::GltfOptions options;
   options.root_motion = jobs[0].options.root_motion;
-  return {write_gltf(ready.list, options), ready.written};
+  return {scenes::write_gltf(ready.list, options), ready.written};
 }
 
 WrittenFile fbx(const std::vector<WritingJob>& jobs) {
   const Animations ready = prepare(jobs, JointNames::mixamo);
-  GltfOptions options;
+  scenes::GltfOptions options;
   options.root_motion = jobs[0].options.root_motion;
   // Blender joins a bone to the tip of the one above it and then drops its path; so the pelvis is
   // the top, as in Mixamo's files, unless the path is wanted on a bone of its own.
   options.root_node = options.root_motion;
-  return {fbx_from_glb(write_gltf(ready.list, options), ready.written.fps), ready.written};
+  return {scenes::fbx_from_glb(scenes::write_gltf(ready.list, options), ready.written.fps),
+          ready.written};
 }
 
 WrittenFile write_glb(const WritingJob& job) { return glb({job}); }
@@ -71,9 +72,9 @@ WrittenFile write_fbx(const WritingJob& job) { return fbx({job}); }
 
 WrittenFile write_vrma(const WritingJob& job) {
   const Animations ready = prepare({job}, JointNames::vrm);
-  GltfOptions options;
+  scenes::GltfOptions options;
   options.vrm_animation = true;
-  return {write_gltf(ready.list, options), ready.written};
+  return {scenes::write_gltf(ready.list, options), ready.written};
 }
 
 WrittenFile write_npz(const WritingJob& job) {

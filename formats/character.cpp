@@ -3,10 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/bvh.h"
-#include "formats/fbx_reader.h"
 #include "formats/foot_contacts.h"
-#include "formats/gltf_character.h"
-#include "formats/gltf_reader.h"
 #include "formats/source_bvh.h"
 #include "remomask/error.h"
 #include "rig/forward_kinematics.h"
@@ -14,6 +11,9 @@
 #include "rig/skeleton_choice.h"
 #include "rig/skeleton_view.h"
 #include "rig/written_rotations.h"
+#include "scenes/fbx_reader.h"
+#include "scenes/gltf_character.h"
+#include "scenes/gltf_reader.h"
 
 namespace remomask::formats {
 
@@ -70,11 +70,11 @@ rig::SourceMotion put_onto(const rig::SourceMotion& rig, const WritingJob& job,
 rig::SourceMotion read_rig(const std::string& path, std::vector<std::string>& warnings) {
   const std::string extension = lower_extension(path);
   if (is_gltf(extension)) {
-    GltfRig rig = read_gltf_rig(GltfDocument(path));
+    scenes::GltfRig rig = scenes::read_gltf_rig(scenes::GltfDocument(path));
     warnings.insert(warnings.end(), rig.warnings.begin(), rig.warnings.end());
     return std::move(rig.motion);
   }
-  if (extension == ".fbx") return read_fbx_rig(path, {}, &warnings);
+  if (extension == ".fbx") return scenes::read_fbx_rig(path, {}, &warnings);
   if (extension == ".bvh") return rest_of_bvh(read_bvh(path));
   throw FileError(path, 0, "is no character; one is read from .glb, .gltf, .vrm, .fbx or .bvh");
 }
@@ -93,13 +93,13 @@ WrittenFile write_on_character(const WritingJob& job, std::string_view extension
                     "has no body that a .glb could keep; convert the character to .glb, for "
                     "instance in Blender, or write .bvh");
   }
-  const GltfDocument document(path);
-  GltfRig rig = read_gltf_rig(document);
+  const scenes::GltfDocument document(path);
+  scenes::GltfRig rig = scenes::read_gltf_rig(document);
   warnings = rig.warnings;
   rig.motion = put_onto(rig.motion, job, file.written);
   nlohmann::json extras = nlohmann::json::object();
   if (job.sidecar) extras["remomask"] = *job.sidecar;
-  file.bytes = character_glb(document, rig, job.name, extras);
+  file.bytes = scenes::character_glb(document, rig, job.name, extras);
   return file;
 }
 

@@ -6,8 +6,6 @@
 #include "formats/acclaim.h"
 #include "formats/amass.h"
 #include "formats/bvh.h"
-#include "formats/fbx_reader.h"
-#include "formats/gltf_reader.h"
 #include "formats/joint_array.h"
 #include "formats/mapped_kinematics.h"
 #include "formats/motion_reading.h"
@@ -17,6 +15,8 @@
 #include "formats/unread_formats.h"
 #include "remomask/error.h"
 #include "rig/skeleton_choice.h"
+#include "scenes/fbx_reader.h"
+#include "scenes/gltf_reader.h"
 
 namespace remomask::formats {
 
@@ -76,14 +76,15 @@ RawMotion read_amc_motion(const std::string& path, const MotionFileOptions& opti
 RawMotion read_gltf_motion(const std::string& path, const MotionFileOptions& options) {
   std::vector<std::string> warnings;
   RawMotion raw =
-      load_source_motion(read_gltf(path, {options.animation}, &warnings), path, options);
+      load_source_motion(scenes::read_gltf(path, {options.animation}, &warnings), path, options);
   raw.warnings.insert(raw.warnings.begin(), warnings.begin(), warnings.end());
   return raw;
 }
 
 RawMotion read_fbx_motion(const std::string& path, const MotionFileOptions& options) {
   std::vector<std::string> warnings;
-  RawMotion raw = load_source_motion(read_fbx(path, {options.animation}, &warnings), path, options);
+  RawMotion raw =
+      load_source_motion(scenes::read_fbx(path, {options.animation}, &warnings), path, options);
   raw.warnings.insert(raw.warnings.begin(), warnings.begin(), warnings.end());
   return raw;
 }

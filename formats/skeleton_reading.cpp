@@ -2,12 +2,12 @@
 
 #include "formats/acclaim.h"
 #include "formats/bvh.h"
-#include "formats/fbx_reader.h"
-#include "formats/gltf_reader.h"
 #include "formats/mapped_kinematics.h"
 #include "formats/motion_writing.h"
 #include "formats/source_motion_reading.h"
 #include "remomask/error.h"
+#include "scenes/fbx_reader.h"
+#include "scenes/gltf_reader.h"
 
 namespace remomask::formats {
 
@@ -23,10 +23,10 @@ rig::SkeletonView read_skeleton(const std::string& path, const MotionFileOptions
   if (extension == ".amc") {
     source = read_amc(path).source;
   } else if (extension == ".fbx") {
-    source = read_fbx_rig(path, {options.animation}, &warnings);
+    source = scenes::read_fbx_rig(path, {options.animation}, &warnings);
   } else if (extension == ".glb" || extension == ".gltf" || extension == ".vrm" ||
              extension == ".vrma") {
-    GltfRig rig = read_gltf_rig(GltfDocument(path), {options.animation});
+    scenes::GltfRig rig = scenes::read_gltf_rig(scenes::GltfDocument(path), {options.animation});
     warnings.insert(warnings.end(), rig.warnings.begin(), rig.warnings.end());
     source = std::move(rig.motion);
   } else {

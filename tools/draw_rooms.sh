@@ -21,7 +21,7 @@ rooms="$rooms tools"
 home_of() {
   case $1 in
     motion | skeleton | clip | search | generation) echo motion ;;
-    motion_file | rotations) echo formats ;;
+    motion_file | rotations) echo rig ;;
     text_to_motion) echo pipeline ;;
     training | remomask) echo training ;;  # remomask.h includes them all
     *) echo base ;;

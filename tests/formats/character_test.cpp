@@ -3,8 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/bvh.h"
-#include "formats/gltf_document.h"
-#include "formats/gltf_reader.h"
 #include "formats/mapped_kinematics.h"
 #include "motion/canonical.h"
 #include "remomask/error.h"
@@ -12,6 +10,8 @@
 #include "remomask/rotations.h"
 #include "rig/forward_kinematics.h"
 #include "rig/joint_names.h"
+#include "scenes/gltf_document.h"
+#include "scenes/gltf_reader.h"
 #include "tests/motion/support.h"
 
 namespace remomask {
@@ -30,7 +30,8 @@ std::string in_folder(const std::string& name) { return temporary_folder() + "/"
 /// Our own figure, standing still in T-pose: a motion on it must be what it was.
 std::string figure(const std::string& extension) {
   const std::string path = in_folder("figure" + extension);
-  save_motion(path, motion::canonicalize(make_walker(2), humanml_skeleton()));
+  save_motion(path, motion::canonicalize(make_walker(2), humanml_skeleton()),
+              {.common_skeleton = true});
   return path;
 }
 
@@ -44,7 +45,7 @@ TEST(Character, AMotionOnOurOwnFigureIsTheSameAndTheFigureStays) {
   const WrittenMotion written = save_motion(path, motion, options);
   EXPECT_EQ(written.frames, 40);
   const Motion expected = rig::joint_positions(solve_rotations(motion));
-  const rig::SourceMotion read = formats::read_gltf(path);
+  const rig::SourceMotion read = scenes::read_gltf(path);
   ASSERT_EQ(read.frames, 40);
   double worst = 0;
   for (int t = 0; t < read.frames; ++t) {
@@ -56,7 +57,7 @@ TEST(Character, AMotionOnOurOwnFigureIsTheSameAndTheFigureStays) {
     }
   }
   EXPECT_LT(worst, 0.01) << "but for the hold of standing feet";
-  const formats::GltfDocument before(options.character), after(path);
+  const scenes::GltfDocument before(options.character), after(path);
   for (const char* list : {"nodes", "meshes", "skins", "materials", "scenes", "asset"}) {
     EXPECT_EQ(before.json()[list], after.json()[list]) << list;
   }

@@ -6,12 +6,12 @@
 
 #include "base/file.h"
 #include "base/random.h"
-#include "formats/fbx_reader.h"
-#include "formats/gltf_reader.h"
-#include "formats/uri.h"
 #include "motion/canonical.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
+#include "scenes/fbx_reader.h"
+#include "scenes/gltf_reader.h"
+#include "scenes/uri.h"
 #include "tests/motion/support.h"
 
 namespace remomask {
@@ -51,7 +51,7 @@ std::string changed(const std::string& glb, const std::function<void(nlohmann::j
 std::string gltf_refusal(const std::string& bytes, const std::string& name = "bad.glb") {
   write_file_atomically(hostile_path(name), bytes);
   try {
-    formats::read_gltf(hostile_path(name));
+    scenes::read_gltf(hostile_path(name));
   } catch (const FileError& error) {
     return error.what();
   }
@@ -170,15 +170,15 @@ TEST(HostileGltf, DepthLengthAndTimeAreBounded) {
 }
 
 TEST(HostileGltf, NamesOfFilesBesideIt) {
-  EXPECT_TRUE(formats::is_name_inside_folder("walk.bin"));
-  EXPECT_TRUE(formats::is_name_inside_folder("data/walk 1.bin"));
+  EXPECT_TRUE(scenes::is_name_inside_folder("walk.bin"));
+  EXPECT_TRUE(scenes::is_name_inside_folder("data/walk 1.bin"));
   for (const char* name : {"", "..", "../a", "a/../../b", "/a", "C:a", "a\\b", "http://x/a"}) {
-    EXPECT_FALSE(formats::is_name_inside_folder(name)) << name;
+    EXPECT_FALSE(scenes::is_name_inside_folder(name)) << name;
   }
   std::string bytes;
-  EXPECT_TRUE(formats::decode_data_uri("data:application/octet-stream;base64,AAEC", bytes));
+  EXPECT_TRUE(scenes::decode_data_uri("data:application/octet-stream;base64,AAEC", bytes));
   EXPECT_EQ(bytes, std::string("\0\1\2", 3));
-  EXPECT_EQ(formats::decode_percent("a%20b%"), "a b%");
+  EXPECT_EQ(scenes::decode_percent("a%20b%"), "a b%");
 }
 
 /// Damaged bytes are an error or another motion, but nothing worse.
@@ -195,7 +195,7 @@ TEST(HostileFiles, DamagedBytesAreSurvived) {
       const std::string path = hostile_path(std::string("damaged") + extension);
       write_file_atomically(path, bytes);
       try {
-        extension == std::string(".glb") ? formats::read_gltf(path) : formats::read_fbx(path);
+        extension == std::string(".glb") ? scenes::read_gltf(path) : scenes::read_fbx(path);
       } catch (const FileError&) {
       }
     }

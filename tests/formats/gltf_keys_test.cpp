@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
-#include "formats/gltf_reader.h"
 #include "remomask/error.h"
 #include "rig/source_motion.h"
+#include "scenes/gltf_reader.h"
 #include "tests/motion/support.h"
 
 namespace remomask {
@@ -83,7 +83,7 @@ TEST(GltfKeys, EveryInterpolationGivesItsCurve) {
   file.animate("turn", 1, "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, q, q}, 4);
   file.animate("growth", 1, "scale", "LINEAR", {0, 1}, {1, 1, 1, 2, 2, 2}, 3);
   const std::string path = file.save();
-  const auto read = [&](const char* name) { return formats::read_gltf(path, {name}); };
+  const auto read = [&](const char* name) { return scenes::read_gltf(path, {name}); };
   // Sparse keys are sampled 30 times a second, and the scale of the top makes metres of it.
   EXPECT_EQ(read("step").frames, 61);
   EXPECT_DOUBLE_EQ(read("step").fps, 30);
@@ -104,12 +104,12 @@ TEST(GltfKeys, TheFirstAnimationIsReadAndSaid) {
   file.animate("b", 1, "translation", "STEP", {0, 1}, {0, 1, 0, 0, 1, 0}, 3);
   file.json()["nodes"][0]["scale"] = {1, -1, 1};
   std::vector<std::string> warnings;
-  formats::read_gltf(file.save(), {}, &warnings);
+  scenes::read_gltf(file.save(), {}, &warnings);
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_NE(warnings[0].find("scale"), std::string::npos);
   EXPECT_NE(warnings[1].find("2 animations"), std::string::npos);
-  EXPECT_THROW(formats::read_gltf(file.save(), {"c"}), FileError);
-  EXPECT_THROW(formats::read_gltf(file.save(), {"7"}), FileError);
+  EXPECT_THROW(scenes::read_gltf(file.save(), {"c"}), FileError);
+  EXPECT_THROW(scenes::read_gltf(file.save(), {"7"}), FileError);
 }
 
 TEST(GltfKeys, AFileWithoutAnimationSaysWhatItIsGoodFor) {
@@ -117,7 +117,7 @@ TEST(GltfKeys, AFileWithoutAnimationSaysWhatItIsGoodFor) {
   file.add({0}, "SCALAR", 1);
   file.json()["skins"] = {{{"joints", {1, 2}}}};
   try {
-    formats::read_gltf(file.save());
+    scenes::read_gltf(file.save());
     FAIL() << "no error";
   } catch (const FileError& error) {
     EXPECT_NE(std::string(error.what()).find("--character"), std::string::npos) << error.what();

@@ -4,8 +4,6 @@
 #include <assimp/Importer.hpp>
 #include <nlohmann/json.hpp>
 
-#include "formats/fbx_reader.h"
-#include "formats/gltf_reader.h"
 #include "motion/canonical.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
@@ -13,6 +11,8 @@
 #include "rig/forward_kinematics.h"
 #include "rig/joint_names.h"
 #include "rig/source_motion.h"
+#include "scenes/fbx_reader.h"
+#include "scenes/gltf_reader.h"
 #include "tests/formats/scene_positions.h"
 #include "tests/motion/support.h"
 
@@ -70,7 +70,7 @@ std::string written(const std::string& extension, const Motion& motion) {
 TEST(Gltf, AWrittenFileIsReadBackWithItsJoints) {
   const Motion motion = walk_of(60);
   for (const char* extension : {".glb", ".vrma"}) {
-    const rig::SourceMotion read = formats::read_gltf(written(extension, motion));
+    const rig::SourceMotion read = scenes::read_gltf(written(extension, motion));
     EXPECT_EQ(read.frames, 60);
     EXPECT_DOUBLE_EQ(read.fps, 20);
     EXPECT_EQ(read.joints[0].parent, -1);
@@ -113,7 +113,7 @@ TEST(Gltf, FbxHoldsTheSameJoints) {
           << kNames[j] << " " << t;
     }
   }
-  const rig::SourceMotion read = formats::read_fbx(written(".fbx", motion));
+  const rig::SourceMotion read = scenes::read_fbx(written(".fbx", motion));
   EXPECT_EQ(read.frames, 40);
   EXPECT_NEAR(read.fps, 20, 1e-6);
   EXPECT_EQ(read.metres_per_unit, 1);

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// "a%20b" as "a b". A percent sign without two hexadecimal digits stays.
 std::string decode_percent(const std::string& text);
@@ -13,4 +13,4 @@ bool decode_data_uri(const std::string& uri, std::string& bytes);
 /// True for a relative path without "..", drive, scheme or control signs.
 bool is_name_inside_folder(const std::string& path);
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -1,16 +1,16 @@
-#include "formats/gltf_writer.h"
+#include "scenes/gltf_writer.h"
 
 #include <fmt/format.h>
 
-#include "formats/gltf_builder.h"
-#include "formats/vrma.h"
 #include "remomask/error.h"
 #include "remomask/version.h"
 #include "rig/forward_kinematics.h"
 #include "rig/mannequin.h"
 #include "rig/rest_skeleton.h"
+#include "scenes/gltf_builder.h"
+#include "scenes/vrma.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -208,4 +208,4 @@ std::string write_gltf(const std::vector<GltfAnimation>& animations, const GltfO
   return gltf_bytes(model);
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -1,4 +1,4 @@
-#include "formats/node_motion.h"
+#include "scenes/node_motion.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "remomask/error.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -159,4 +159,4 @@ void add_frames(const NodeTimeline& timeline, const std::vector<int>& joint_of,
   }
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -1,8 +1,8 @@
-#include "formats/gltf_nodes.h"
+#include "scenes/gltf_nodes.h"
 
 #include <fmt/format.h>
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -94,4 +94,4 @@ GltfNodes read_gltf_nodes(const GltfDocument& document) {
   return nodes;
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

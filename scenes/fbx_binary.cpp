@@ -1,4 +1,4 @@
-#include "formats/fbx_binary.h"
+#include "scenes/fbx_binary.h"
 
 #include <cmath>
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 #include "remomask/error.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -153,4 +153,4 @@ std::string complete_fbx(std::string_view bytes, const FbxFacts& facts) {
   return FbxCompleter(bytes, facts).run();
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "formats/gltf_document.h"
 #include "rig/source_motion.h"
+#include "scenes/gltf_document.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 struct AnimationChoice {
   /// Name of the animation, or its number from 0; empty: the first. Several unnamed ones are
@@ -32,4 +32,4 @@ GltfRig read_gltf_rig(const GltfDocument& document, const AnimationChoice& choic
 rig::SourceMotion read_gltf(const std::string& path, const AnimationChoice& choice = {},
                             std::vector<std::string>* warnings = nullptr);
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

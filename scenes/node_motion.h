@@ -6,7 +6,7 @@
 #include "motion/vector.h"
 #include "rig/source_motion.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// A node's transform: scaled, then rotated, then moved.
 struct NodeTransform {
@@ -51,4 +51,4 @@ void set_rest(const std::vector<NodeTransform>& rest, rig::SourceMotion& motion)
 void add_frames(const NodeTimeline& timeline, const std::vector<int>& joint_of,
                 const std::vector<NodeTransform>& rest, rig::SourceMotion& motion);
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -1,9 +1,9 @@
-#include "formats/vrma.h"
+#include "scenes/vrma.h"
 
-#include "formats/gltf_builder.h"
 #include "rig/joint_names.h"
+#include "scenes/gltf_builder.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 void add_vrm_animation(tinygltf::Model& model, int first_joint) {
   nlohmann::json bones;
@@ -17,4 +17,4 @@ void add_vrm_animation(tinygltf::Model& model, int first_joint) {
   model.extensionsUsed.push_back(name);
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

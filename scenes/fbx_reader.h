@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "formats/gltf_reader.h"
 #include "rig/source_motion.h"
+#include "scenes/gltf_reader.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// The skeleton of an .fbx file and one animation of it (no frames where it has none), read by
 /// assimp: the joints of the skins and what is animated, with the nodes above them. Throws
@@ -18,4 +18,4 @@ rig::SourceMotion read_fbx_rig(const std::string& path, const AnimationChoice& c
 rig::SourceMotion read_fbx(const std::string& path, const AnimationChoice& choice = {},
                            std::vector<std::string>* warnings = nullptr);
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

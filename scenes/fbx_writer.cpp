@@ -1,4 +1,4 @@
-#include "formats/fbx_writer.h"
+#include "scenes/fbx_writer.h"
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -7,10 +7,10 @@
 #include <assimp/Importer.hpp>
 #include <memory>
 
-#include "formats/fbx_binary.h"
 #include "remomask/error.h"
+#include "scenes/fbx_binary.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::string fbx_from_glb(const std::string& glb, double fps) {
   return complete_fbx({static_cast<const char*>(blob->data), blob->size}, facts);
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

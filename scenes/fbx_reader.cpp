@@ -1,4 +1,4 @@
-#include "formats/fbx_reader.h"
+#include "scenes/fbx_reader.h"
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -11,10 +11,10 @@
 #include <filesystem>
 
 #include "base/file.h"
-#include "formats/node_motion.h"
 #include "remomask/error.h"
+#include "scenes/node_motion.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -243,4 +243,4 @@ rig::SourceMotion read_fbx(const std::string& path, const AnimationChoice& choic
   return motion;
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -1,10 +1,10 @@
-#include "formats/gltf_builder.h"
+#include "scenes/gltf_builder.h"
 
 #include <sstream>
 
 #include "remomask/error.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 int GltfBuilder::add_view(const void* bytes, size_t length, int target) {
   constexpr size_t kAlignment = 4;
@@ -51,4 +51,4 @@ std::string gltf_bytes(const tinygltf::Model& model) {
   return stream.str();
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -1,15 +1,15 @@
-#include "formats/gltf_reader.h"
+#include "scenes/gltf_reader.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "formats/gltf_animation.h"
-#include "formats/gltf_nodes.h"
 #include "remomask/error.h"
+#include "scenes/gltf_animation.h"
+#include "scenes/gltf_nodes.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -195,4 +195,4 @@ rig::SourceMotion read_gltf(const std::string& path, const AnimationChoice& choi
   return std::move(result.motion);
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -3,14 +3,14 @@
 #include <optional>
 #include <string>
 
-#include "formats/gltf_document.h"
-#include "formats/node_motion.h"
+#include "scenes/gltf_document.h"
+#include "scenes/node_motion.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// The animation of `wanted` (a name, or a number from 0; empty: the first); nothing where the file
 /// has none. Tracks of weights are left out. Throws FileError.
 std::optional<NodeTimeline> read_gltf_timeline(const GltfDocument& document,
                                                const std::string& wanted);
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

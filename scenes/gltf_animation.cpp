@@ -1,10 +1,10 @@
-#include "formats/gltf_animation.h"
+#include "scenes/gltf_animation.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -129,4 +129,4 @@ std::optional<NodeTimeline> read_gltf_timeline(const GltfDocument& document,
   return timeline;
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

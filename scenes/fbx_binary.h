@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// What assimp's FBX writer leaves out or gets wrong.
 struct FbxFacts {
@@ -18,4 +18,4 @@ struct FbxFacts {
 /// full turns between keys. Throws Error for what is no binary FBX 7.5.
 std::string complete_fbx(std::string_view bytes, const FbxFacts& facts);
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -6,7 +6,7 @@
 
 #include "remomask/rotations.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// One animation of a glTF file.
 struct GltfAnimation {
@@ -31,4 +31,4 @@ struct GltfOptions {
 std::string write_gltf(const std::vector<GltfAnimation>& animations,
                        const GltfOptions& options = {});
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -1,4 +1,4 @@
-#include "formats/gltf_document.h"
+#include "scenes/gltf_document.h"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "base/file.h"
-#include "formats/uri.h"
 #include "remomask/error.h"
+#include "scenes/uri.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -366,4 +366,4 @@ GltfNumbers GltfDocument::accessor(int accessor_index) const {
   return result;
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// The numbers of an accessor: `count` elements of `width` components.
 struct GltfNumbers {
@@ -67,4 +67,4 @@ class GltfDocument {
   bool is_binary_ = false;
 };
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

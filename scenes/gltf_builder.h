@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// Collects the arrays of a glTF file in one buffer, with an accessor and a view for each.
 class GltfBuilder {
@@ -58,4 +58,4 @@ tinygltf::Value gltf_value(const nlohmann::json& json);
 /// The file's bytes. Throws Error if the library refuses the model.
 std::string gltf_bytes(const tinygltf::Model& model);
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "formats/gltf_reader.h"
+#include "scenes/gltf_reader.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// A figure's file with the motion of `rig` as its only animation, as .glb. All else stays as it
 /// is, members and extensions that this program does not know among it. Throws FileError for a
@@ -12,4 +12,4 @@ namespace remomask::formats {
 std::string character_glb(GltfDocument document, const GltfRig& rig, const std::string& name,
                           const nlohmann::json& extras);
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

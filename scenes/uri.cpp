@@ -1,10 +1,10 @@
-#include "formats/uri.h"
+#include "scenes/uri.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -69,4 +69,4 @@ bool is_name_inside_folder(const std::string& path) {
   return std::none_of(name.begin(), name.end(), [](const auto& part) { return part == ".."; });
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -1,4 +1,4 @@
-#include "formats/gltf_character.h"
+#include "scenes/gltf_character.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cstring>
 #include <optional>
 
-#include "formats/gltf_nodes.h"
+#include "scenes/gltf_nodes.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 namespace {
 
@@ -182,4 +182,4 @@ std::string character_glb(GltfDocument document, const GltfRig& rig, const std::
   return glb_of(document.json(), bytes);
 }
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "formats/gltf_document.h"
-#include "formats/node_motion.h"
+#include "scenes/gltf_document.h"
+#include "scenes/node_motion.h"
 
-namespace remomask::formats {
+namespace remomask::scenes {
 
 /// The node tree of a file.
 struct GltfNodes {
@@ -20,4 +20,4 @@ GltfNodes read_gltf_nodes(const GltfDocument& document);
 /// Splits a column-major 4 x 4 matrix. A mirrored one gets a negative scale in x.
 NodeTransform split_matrix(const double* matrix);
 
-}  // namespace remomask::formats
+}  // namespace remomask::scenes
