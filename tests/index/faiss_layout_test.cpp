@@ -14,7 +14,7 @@
 namespace remomask {
 namespace {
 
-constexpr int kCount = 200, kWidth = 8;
+constexpr int kLayoutCount = 200, kLayoutWidth = 8;
 
 std::string serialised(const faiss::Index& index) {
   faiss::VectorIOWriter writer;
@@ -23,49 +23,50 @@ std::string serialised(const faiss::Index& index) {
 }
 
 std::string with_ids(faiss::Index& inner) {
-  std::vector<float> vectors(static_cast<size_t>(kCount) * kWidth);
+  std::vector<float> vectors(static_cast<size_t>(kLayoutCount) * kLayoutWidth);
   std::mt19937 random(1);
   for (float& value : vectors) value = static_cast<float>(random()) / 4e9f;
-  if (!inner.is_trained) inner.train(kCount, vectors.data());
+  if (!inner.is_trained) inner.train(kLayoutCount, vectors.data());
   faiss::IndexIDMap2 index(&inner);
-  std::vector<int64_t> ids(kCount);
-  for (int i = 0; i < kCount; ++i) ids[static_cast<size_t>(i)] = 3 * i + 1;
-  index.add_with_ids(kCount, vectors.data(), ids.data());
+  std::vector<int64_t> ids(kLayoutCount);
+  for (int i = 0; i < kLayoutCount; ++i) ids[static_cast<size_t>(i)] = 3 * i + 1;
+  index.add_with_ids(kLayoutCount, vectors.data(), ids.data());
   return serialised(index);
 }
 
 /// Every field of eight bytes that holds the count, changed to a huge one.
 void expect_no_claims(const std::string& good) {
-  const int64_t count = kCount, huge = int64_t{1} << 40;
+  const int64_t count = kLayoutCount, huge = int64_t{1} << 40;
   for (size_t at = 0; at + 8 <= good.size(); ++at) {
     if (std::memcmp(good.data() + at, &count, 8) != 0) continue;
     std::string bad(good);
     std::memcpy(bad.data() + at, &huge, 8);
-    EXPECT_FALSE(index::fits_layout(bad, {kCount, kWidth}, true)) << at;
+    EXPECT_FALSE(index::fits_layout(bad, {kLayoutCount, kLayoutWidth}, true)) << at;
   }
   for (size_t size = 0; size < good.size(); size += 7) {
-    EXPECT_FALSE(index::fits_layout(good.substr(0, size), {kCount, kWidth}, true)) << size;
+    EXPECT_FALSE(index::fits_layout(good.substr(0, size), {kLayoutCount, kLayoutWidth}, true))
+        << size;
   }
-  EXPECT_FALSE(index::fits_layout(good, {kCount + 1, kWidth}, true));
-  EXPECT_FALSE(index::fits_layout(good, {kCount, kWidth + 1}, true));
-  EXPECT_FALSE(index::fits_layout(good + "x", {kCount, kWidth}, true));
+  EXPECT_FALSE(index::fits_layout(good, {kLayoutCount + 1, kLayoutWidth}, true));
+  EXPECT_FALSE(index::fits_layout(good, {kLayoutCount, kLayoutWidth + 1}, true));
+  EXPECT_FALSE(index::fits_layout(good + "x", {kLayoutCount, kLayoutWidth}, true));
 }
 
 TEST(FaissLayout, FlatIsWalkedToItsEnd) {
-  faiss::IndexFlatIP inner(kWidth);
+  faiss::IndexFlatIP inner(kLayoutWidth);
   const std::string good = with_ids(inner);
-  EXPECT_TRUE(index::fits_layout(good, {kCount, kWidth}, true));
-  EXPECT_TRUE(index::fits_layout(serialised(inner), {kCount, kWidth}, false));
+  EXPECT_TRUE(index::fits_layout(good, {kLayoutCount, kLayoutWidth}, true));
+  EXPECT_TRUE(index::fits_layout(serialised(inner), {kLayoutCount, kLayoutWidth}, false));
   expect_no_claims(good);
 }
 
 TEST(FaissLayout, ListsAreWalkedToTheirEnd) {
   for (const size_t lists : {4u, 150u}) {  // written as full, and as sparse
-    faiss::IndexFlatIP quantizer(kWidth);
-    faiss::IndexIVFFlat inner(&quantizer, kWidth, lists, faiss::METRIC_INNER_PRODUCT);
+    faiss::IndexFlatIP quantizer(kLayoutWidth);
+    faiss::IndexIVFFlat inner(&quantizer, kLayoutWidth, lists, faiss::METRIC_INNER_PRODUCT);
     inner.cp.min_points_per_centroid = 1;
     const std::string good = with_ids(inner);
-    EXPECT_TRUE(index::fits_layout(good, {kCount, kWidth}, true)) << lists;
+    EXPECT_TRUE(index::fits_layout(good, {kLayoutCount, kLayoutWidth}, true)) << lists;
     expect_no_claims(good);
   }
 }

@@ -80,7 +80,7 @@ TEST(Draft, FollowedFramesAreSpreadEvenly) {
   EXPECT_NE(pipeline::followed_frames(40, 0.5, 7), pipeline::followed_frames(40, 0.5, 8));
 }
 
-std::vector<pipeline::RetrievedMotion> posed_hit(const pipeline::Generator& generator) {
+std::vector<pipeline::RetrievedMotion> posed_hit() {
   std::vector<pipeline::RetrievedMotion> hits = two_hits();
   hits.resize(1);
   hits[0].poses = motion::recover_motion(swinging_clips({40})[0].features, humanml_skeleton());
@@ -104,7 +104,7 @@ GenerateOptions following(double share) {
 
 TEST(Draft, AMotionKeepsTheCodesThatItFollows) {
   const pipeline::Generator generator(tiny_model().stages);
-  const auto hits = posed_hit(generator);
+  const auto hits = posed_hit();
   const at::Tensor codes = hit_codes(generator, *hits[0].poses);
   const pipeline::Generated half = generator.generate("a person walks", hits, following(0.5));
   ASSERT_TRUE(half.followed);
@@ -123,7 +123,7 @@ TEST(Draft, AMotionKeepsTheCodesThatItFollows) {
 
 TEST(Draft, ADraftShorterThanTheMotionIsItsBeginning) {
   const pipeline::Generator generator(tiny_model().stages);
-  const auto hits = posed_hit(generator);
+  const auto hits = posed_hit();
   GenerateOptions options = following(1);
   options.seconds = 14;  // several windows, the draft in the first
   const pipeline::Generated made = generator.generate("a person walks", hits, options);
@@ -133,7 +133,7 @@ TEST(Draft, ADraftShorterThanTheMotionIsItsBeginning) {
 
 TEST(Draft, KnownFramesAndTheirSeamsStay) {
   const pipeline::Generator generator(tiny_model().stages);
-  const auto hits = posed_hit(generator);
+  const auto hits = posed_hit();
   pipeline::TokenCanvas canvas = generator.canvas(10);
   canvas.tokens.slice(0, 0, 4).fill_(5);
   canvas.known.slice(0, 0, 4).fill_(true);
@@ -153,7 +153,7 @@ TEST(Draft, TheGateDecidesHowFarAHitIsFollowed) {
   auto stages = tiny_model().stages;
   stages.at("masked").config["evidence_gate"] = toy_gate();
   const pipeline::Generator generator(stages);
-  auto hits = posed_hit(generator);
+  auto hits = posed_hit();
   const auto share = [&](double similarity) {
     hits[0].similarity = similarity;
     const pipeline::Generated made = generator.generate("a person walks", hits, following(0.8));
@@ -170,7 +170,7 @@ TEST(Draft, HitsThatTheGateDoesNotTrustAreNotRead) {
   auto stages = tiny_model().stages;
   stages.at("masked").config["evidence_gate"] = toy_gate();
   const pipeline::Generator generator(stages);
-  auto hits = posed_hit(generator);
+  auto hits = posed_hit();
   hits.push_back(hits[0]);
   const auto tokens = [&](double first, double second, GenerateOptions options) {
     hits[0].similarity = first;

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
+#include "motion/feature_layout.h"
 #include "tests/tokenizer/tokenizer_test_tools.h"
-#include "tokenizer/feature_layout.h"
 #include "tokenizer/motion_recovery.h"
 
 namespace remomask {
