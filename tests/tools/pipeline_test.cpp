@@ -118,6 +118,10 @@ TEST_F(PipelineTest, GeneratedFileCarriesItsEvidence) {
   auto stored = nlohmann::json::parse(read_file(path("kick.bvh.json")));
   stored["file"] = motion["file"];
   stored["seconds_of_work"] = motion["seconds_of_work"];
+  stored["file_fps"] = motion["file_fps"];
+  stored["file_frames"] = motion["file_frames"];
+  EXPECT_EQ(stored["motion_hash"].get<std::string>().size(), 32u);
+  stored.erase("motion_hash");
   EXPECT_EQ(stored, motion);
   EXPECT_EQ(read_file(path("kick.png")).substr(1, 3), "PNG");
   const auto back = run_json({"convert", path("kick.bvh"), path("kick.npy")});
