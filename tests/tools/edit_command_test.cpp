@@ -82,12 +82,15 @@ TEST_F(EditCommandTest, BvhKeepsWhatIsNotNamed) {
             path("jump.bvh")});
   run_json({"edit", path("walk.bvh"), "--prompt", "someone jumps", "--span", "1.5-3", "-o",
             path("jump.npy")});
-  // The same edit in the other format: what BVH rounds is all that differs.
+  // The same edit in the other format. The walk was on the skeleton of BVH files already; what is
+  // generated between is put onto it.
   run_json({"edit", path("jump.bvh"), "--prompt", "nothing", "--span", "0-0.05", "--parts",
             "left_arm", "-o", path("back.npy")});
   const auto exact = read_joints(path("jump.npy")), back = read_joints(path("back.npy"));
   const auto all = [](int) { return true; };
-  EXPECT_LT(difference(exact, back, 1, 83, all), 2e-4);
+  EXPECT_LT(difference(exact, back, 1, 29, all), 1e-3);
+  EXPECT_LT(difference(exact, back, 61, 83, all), 1e-3);
+  EXPECT_LT(difference(exact, back, 29, 61, all), 0.05);
 }
 
 TEST_F(EditCommandTest, ContinuesToTheFrame) {

@@ -118,6 +118,11 @@ TEST(Schema, DescribesDatabases) {
     if (entry.path().extension() != ".npy") continue;
     const Json made = run_json({"convert", entry.path().string(), folder.path("walk.bvh")});
     EXPECT_EQ(fault_of("convert.json", made), "");
+    run_json({"convert", entry.path().string(), folder.path("figure.glb")});
+    EXPECT_EQ(fault_of("retarget.json",
+                       run_json({"retarget", entry.path().string(), "--character",
+                                 folder.path("figure.glb"), "-o", folder.path("moved.glb")})),
+              "");
     break;
   }
 }
