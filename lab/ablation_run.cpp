@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <set>
 
-#include "base/json.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "motion/features.h"
 #include "nn/tensor_values.h"
 #include "pipeline/evidence.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "base/json.h"
 #include "base/hash.h"
+#include "base/json.h"
 #include "remomask/error.h"
 
 namespace remomask::nn {

@@ -31,7 +31,8 @@ Motion joint_positions(const JointRotations& motion) {
   for (int t = 0; t < motion.frames; ++t) {
     const WorldPose pose = world_pose(motion, t);
     for (int j = 0; j < result.joints; ++j) {
-      set_joint_position(result, t, j, pose.positions[static_cast<size_t>(j + above)]);
+      set_joint_position(result, t, j,
+                         pose.positions[static_cast<size_t>(j) + static_cast<size_t>(above)]);
     }
   }
   return result;

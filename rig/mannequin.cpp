@@ -152,7 +152,7 @@ std::vector<Ring> limb_rings(const std::vector<Vec3>& points, const std::vector<
                              int before, const std::vector<Section>& sections) {
   std::vector<Ring> rings;
   for (const Section& section : sections) {
-    const Vec3 from = points[section.bone], to = points[section.bone + 1];
+    const Vec3 &from = points[section.bone], &to = points[section.bone + 1];
     const Vec3 along = (to - from).normalized();
     const Vec3 reference = std::abs(along.z()) > 0.9 ? Vec3::UnitY() : Vec3::UnitZ();
     const Vec3 right = reference.cross(along).normalized();

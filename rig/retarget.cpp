@@ -16,17 +16,17 @@ namespace remomask::rig {
 
 namespace {
 
-enum BodyPart : size_t {
+enum FigurePoint : size_t {
   kPartPelvis = 0,
   kPartNeck = 12,
   kPartLeftShoulder = 16,
   kPartRightShoulder = 17,
 };
 
-struct Limb {
+struct FigureLimb {
   size_t upper, middle, end, tip;
 };
-constexpr Limb kLegs[] = {{1, 4, 7, 10}, {2, 5, 8, 11}};
+constexpr FigureLimb kLegs[] = {{1, 4, 7, 10}, {2, 5, 8, 11}};
 constexpr size_t kArms[][3] = {{16, 18, 20}, {17, 19, 21}};
 
 /// Without these there is no body to move.
@@ -128,7 +128,7 @@ class Retargeter {
       lowest = std::min(lowest, up(place));
       highest = std::max(highest, up(place));
     }
-    for (const Limb& leg : kLegs) {
+    for (const FigureLimb& leg : kLegs) {
       own += (source_rest(leg.upper) - source_rest(leg.middle)).norm() +
              (source_rest(leg.middle) - source_rest(leg.end)).norm();
       theirs += (rest_place(leg.upper) - rest_place(leg.middle)).norm() +
@@ -162,7 +162,7 @@ class Retargeter {
       corrections_[arm[2]] = corrections_[arm[1]];
     }
     const Vec3 vertical = axes_ * Vec3::UnitY();
-    for (const Limb& leg : kLegs) {
+    for (const FigureLimb& leg : kLegs) {
       corrections_[leg.upper] = along(leg.upper, leg.middle, Quat::Identity());
       corrections_[leg.middle] = along(leg.middle, leg.end, corrections_[leg.upper]);
       if (body_[leg.tip] < 0) continue;
@@ -257,7 +257,7 @@ class Retargeter {
     return shifts;
   }
 
-  void place_foot(SkeletonPose& pose, const WorldPose& source, const Limb& leg,
+  void place_foot(SkeletonPose& pose, const WorldPose& source, const FigureLimb& leg,
                   const Vec3& shift) const {
     const auto at = [&](size_t part) { return static_cast<size_t>(body_[part]); };
     const Vec3 vertical = axes_ * Vec3::UnitY();
@@ -278,7 +278,7 @@ class Retargeter {
   }
 
   /// Moves what hangs from a leg after its turns; foot and toes keep their direction.
-  void follow(SkeletonPose& pose, size_t top, const Limb& leg, const Quat& foot,
+  void follow(SkeletonPose& pose, size_t top, const FigureLimb& leg, const Quat& foot,
               const Quat& toe) const {
     std::vector<bool> below(rig_.joints.size(), false);
     below[top] = true;

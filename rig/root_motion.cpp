@@ -33,7 +33,7 @@ std::vector<double> headings_of(const JointRotations& motion) {
     }
     shown = t;
   }
-  for (size_t i = static_cast<size_t>(shown + 1); shown >= 0 && i < headings.size(); ++i) {
+  for (size_t i = static_cast<size_t>(shown) + 1; shown >= 0 && i < headings.size(); ++i) {
     headings[i] = headings[static_cast<size_t>(shown)];
   }
   return headings;
