@@ -52,6 +52,7 @@ class Checker {
     std::stable_sort(
         report_.defects.begin(), report_.defects.end(),
         [](const Defect& left, const Defect& right) { return left.clip_id < right.clip_id; });
+    report_.has_checksums = checksums_;
     return std::move(report_);
   }
 

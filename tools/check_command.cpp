@@ -27,7 +27,7 @@ bool is_database(const std::string& path) {
 
 CheckedFile check_database_file(const std::string& path, Program& program) {
   const db::CheckReport report = db::check_database(path, program.monitor());
-  CheckedFile checked{.kind = "database"};
+  CheckedFile checked{.kind = "database", .has_checksums = report.has_checksums};
   checked.content =
       fmt::format("{}, {}, vectors of {}", counted(report.clips, "clip"),
                   counted(report.captions, "caption"), counted(report.embeddings, "clip"));
@@ -77,7 +77,7 @@ void print_file(const std::string& path, const CheckedFile& checked) {
   fmt::print("{}: {} in order ({}){}\n", path, checked.kind, checked.content,
              checked.has_checksums ? ""
                                    : "; it was written without checksums, so that damage of "
-                                     "numbers cannot be seen");
+                                     "numbers cannot be seen (a database: remomask db upgrade)");
 }
 
 }  // namespace

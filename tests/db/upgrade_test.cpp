@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "db/check.h"
 #include "db/database.h"
 #include "db/sqlite.h"
 #include "db/upgrade.h"
@@ -113,9 +114,11 @@ TEST_F(UpgradeTest, Format3IsReadAsItIsAndItsUpgradeAddsChecksums) {
     const db::Database database(path_, db::OpenMode::read_only);
     EXPECT_EQ(describe_database(database), before_);
     EXPECT_EQ(database.embeddings("r").size(), 1u);
+    EXPECT_FALSE(db::check_database(path_).has_checksums);
     EXPECT_EQ(schema_of(path_), schema);
   }
   EXPECT_EQ(db::upgrade_database(path_).version_before, 3);
+  EXPECT_TRUE(db::check_database(path_).has_checksums);
   const db::SqliteConnection connection(path_, db::SqliteMode::read_only);
   for (const char* table : {"clip", "motion", "embedding"}) {
     const std::string sql = std::string("SELECT count(*) FROM ") + table + " WHERE checksum = ''";
