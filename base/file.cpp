@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kTemporaryMarker = ".tmp-";
 constexpr uint64_t kFirstPiece = 4096;
 constexpr uint64_t kMaxPipeBytes = uint64_t{1} << 28;
 

@@ -5,6 +5,9 @@
 
 namespace remomask {
 
+/// Stands before the tag in the temporary names of files (AtomicFile).
+inline constexpr const char* kTemporaryMarker = ".tmp-";
+
 /// Part of a temporary name that tells whose it is: machine and process.
 std::string process_tag();
 

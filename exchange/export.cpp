@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
+#include "base/leftovers.h"
 #include "remomask/error.h"
 
 namespace remomask::exchange {
@@ -85,6 +86,8 @@ void begin_export(const std::string& folder, const nlohmann::json& plan, bool re
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) throw FileError(folder, 0, "cannot be made: " + failed.message());
+  // An export that was killed at its very beginning leaves no more than that.
+  remove_leftovers(folder, kTemporaryMarker);
   const std::string plan_path = (fs::path(folder) / kPlanFile).string();
   if (fs::exists(plan_path)) {
     if (!resume) {
@@ -105,28 +108,40 @@ void begin_export(const std::string& folder, const nlohmann::json& plan, bool re
   write_file_atomically(plan_path, plan.dump(1) + "\n");
 }
 
+/// Whether the folder holds the whole export already: the captions come last but for the plan.
+bool is_finished(const std::string& folder, const std::string& captions_path,
+                 const std::string& captions) {
+  return !fs::exists(fs::path(folder) / kPlanFile) && fs::exists(captions_path) &&
+         read_file(captions_path) == captions;
+}
+
 }  // namespace
 
 void export_clips(const db::Database& database, const std::vector<int64_t>& ids,
                   const std::string& folder, const ExportOptions& options, const Monitor& monitor) {
   const db::ReadSnapshot snapshot(database);
-  begin_export(folder, export_plan(database, ids, options), options.resume);
   FileNames names;
+  std::vector<std::string> files;
   std::string captions;
+  for (const int64_t id : ids) {
+    const db::Clip clip = database.clip(id);
+    const std::string stem = names.choose(clip.name);
+    files.push_back((fs::path(folder) / (stem + options.extension)).string());
+    captions += captions_line(clip, stem);
+  }
+  const std::string captions_path = (fs::path(folder) / "captions.jsonl").string();
+  if (options.resume && is_finished(folder, captions_path, captions)) return;
+  begin_export(folder, export_plan(database, ids, options), options.resume);
   for (size_t i = 0; i < ids.size(); ++i) {
     if (monitor.stop_requested()) {
       throw Interrupted("the export was stopped; the same command with --resume goes on");
     }
-    const db::Clip clip = database.clip(ids[i]);
-    const std::string stem = names.choose(clip.name);
-    const std::string file = (fs::path(folder) / (stem + options.extension)).string();
     // Files are written whole or not at all.
-    if (!fs::exists(file)) save_motion(file, database.motion(ids[i]), options.writing);
-    captions += captions_line(clip, stem);
+    if (!fs::exists(files[i])) save_motion(files[i], database.motion(ids[i]), options.writing);
     monitor.report({"export " + database.path(), static_cast<double>(i + 1),
                     static_cast<double>(ids.size()), ""});
   }
-  write_file_atomically((fs::path(folder) / "captions.jsonl").string(), captions);
+  write_file_atomically(captions_path, captions);
   fs::remove(fs::path(folder) / kPlanFile);
 }
 

@@ -175,6 +175,7 @@ TEST_F(ExportTest, AStoppedExportIsResumedAndNoOtherOne) {
   exchange::ExportOptions resume;
   resume.resume = true;
   exchange::export_clips(database_, ids_, folder, resume);
+  exchange::export_clips(database_, ids_, folder, resume);  // of a finished one: nothing to do
   exchange::export_clips(database_, ids_, folder_ / "whole", {});
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "whole")) {
     const std::string name = entry.path().filename().string();
