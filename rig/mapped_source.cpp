@@ -24,26 +24,8 @@ MappedSource::MappedSource(const SourceMotion& source, const SkeletonMap& map)
 }
 
 void MappedSource::positions(int frame, float* out) {
-  const size_t count = source_.joints.size();
   for (const size_t j : needed_) {
-    const SourceJoint& joint = source_.joints[j];
-    Quat rotation = joint.rotation;
-    Vec3 translation = joint.offset;
-    if (frame >= 0) {
-      const size_t at = static_cast<size_t>(frame) * count + j;
-      const float* q = source_.rotations.data() + at * 4;
-      const float* t = source_.translations.data() + at * 3;
-      rotation = Quat(q[3], q[0], q[1], q[2]);
-      translation = Vec3(t[0], t[1], t[2]);
-    }
-    if (joint.parent < 0) {
-      world_.positions[j] = translation;
-      world_.rotations[j] = rotation;
-    } else {
-      const auto parent = static_cast<size_t>(joint.parent);
-      world_.positions[j] = world_.positions[parent] + world_.rotations[parent] * translation;
-      world_.rotations[j] = world_.rotations[parent] * rotation;
-    }
+    place_joint(source_, frame, j, world_.positions, world_.rotations);
   }
   for (const PlacedPoint& point : points_) {
     const auto to = static_cast<size_t>(point.to);

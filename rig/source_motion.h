@@ -32,6 +32,11 @@ struct SourceMotion {
   int find_joint(std::string_view name) const;  ///< -1 if absent
 };
 
+/// Writes the world position and rotation of one joint in `frame` (-1: the rest pose) into its
+/// places of `positions` and `rotations`, which hold those of its parent already.
+void place_joint(const SourceMotion& source, int frame, size_t joint, std::vector<Vec3>& positions,
+                 std::vector<Quat>& rotations);
+
 /// World position of every joint in `frame`; the rest pose for frame -1.
 std::vector<Vec3> world_positions(const SourceMotion& source, int frame);
 

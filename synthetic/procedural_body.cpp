@@ -1,4 +1,5 @@
 #include "synthetic/procedural_body.h"
+#include "motion/body_joints.h"
 #include "motion/vector.h"
 
 #include <algorithm>
@@ -9,30 +10,7 @@ namespace remomask::synthetic {
 
 namespace {
 
-enum BodyJoint {
-  kBodyPelvis,
-  kBodyLeftHip,
-  kBodyRightHip,
-  kBodySpine1,
-  kBodyLeftKnee,
-  kBodyRightKnee,
-  kBodySpine2,
-  kBodyLeftAnkle,
-  kBodyRightAnkle,
-  kBodySpine3,
-  kBodyLeftToe,
-  kBodyRightToe,
-  kBodyNeck,
-  kBodyLeftCollar,
-  kBodyRightCollar,
-  kBodyHead,
-  kBodyLeftShoulder,
-  kBodyRightShoulder,
-  kBodyLeftElbow,
-  kBodyRightElbow,
-  kBodyLeftWrist,
-  kBodyRightWrist
-};
+using enum motion::BodyJoint;
 
 constexpr double kLegReach = 0.993;   // of the leg's length: a knee is never locked
 constexpr double kSteepestFoot = 62;  // degrees of heel lift on the floor

@@ -32,8 +32,7 @@ void register_retarget(CLI::App& app, Program& program) {
       ->required();
   options->overwrite.add(*command);
   options->writing.add(*command, "--output-fps");
-  command->add_option("--skeleton-map", options->file.skeleton_map,
-                      "map name or file for the motion");
+  add_skeleton_map_option(*command, options->file.skeleton_map);
   command->add_option("--animation", options->file.animation,
                       "name or number (from 0) of the animation of a glTF or FBX motion");
   add_reading_options(*command, options->file.fps, options->file.root);
