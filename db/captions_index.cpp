@@ -47,6 +47,14 @@ std::string quote_caption_words(const std::string& text) {
   return query;
 }
 
+bool Database::clip_has_words(int64_t clip_id, const std::string& fts_query) const {
+  SqliteStatement row(impl_->connection,
+                      "SELECT 1 FROM caption_words WHERE caption_words MATCH ? AND rowid BETWEEN "
+                      "? AND ? LIMIT 1");
+  row.bind(1, fts_query).bind(2, clip_id * kCaptionsOfClip);
+  return row.bind(3, (clip_id + 1) * kCaptionsOfClip - 1).step();
+}
+
 std::vector<CaptionMatch> Database::match_captions(const std::string& fts_query, int limit) const {
   const SqliteConnection& connection = impl_->connection;
   SqliteStatement rows(connection,

@@ -49,6 +49,7 @@ class Checker {
     attempt([&] { check_captions(); });
     attempt([&] { check_words(); });
     attempt([&] { check_embeddings(); });
+    attempt([&] { check_caption_vectors(); });
     std::stable_sort(
         report_.defects.begin(), report_.defects.end(),
         [](const Defect& left, const Defect& right) { return left.clip_id < right.clip_id; });
@@ -229,6 +230,17 @@ class Checker {
         add(id, "its vectors of retriever " + retriever +
                     " are damaged (their checksum differs); run: remomask index DB --rebuild");
       }
+    }
+  }
+
+  void check_caption_vectors() {
+    if (connection_.integer("PRAGMA user_version") < kCaptionVectorVersion) return;
+    SqliteStatement rows(connection_,
+                         "SELECT encoder_hash, text, vector, checksum FROM caption_vector");
+    while (rows.step()) {
+      if (rows.text(3) == caption_vector_checksum(rows.text(1), rows.blob(2))) continue;
+      add(0, "the vector of the caption \"" + rows.text(1) + "\" made by encoder " + rows.text(0) +
+                 " is damaged (its checksum differs); run: remomask index DB --rebuild");
     }
   }
 

@@ -44,6 +44,10 @@ std::string motion_checksum(int64_t frames, int64_t joints, std::span<const std:
   return Fields().add(frames).add(joints).add(positions).checksum();
 }
 
+std::string caption_vector_checksum(const std::string& text, std::span<const std::byte> vector) {
+  return Fields().add(text).add(vector).checksum();
+}
+
 std::string embedding_checksum(std::span<const std::byte> motion, std::span<const std::byte> parts,
                                std::span<const std::byte> text) {
   return Fields().add(motion).add(parts).add(text).checksum();

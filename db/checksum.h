@@ -17,6 +17,9 @@ std::string clip_checksum(const Clip& clip);
 /// Of the positions as they are stored.
 std::string motion_checksum(int64_t frames, int64_t joints, std::span<const std::byte> positions);
 
+/// Of a text and its vector as it is stored.
+std::string caption_vector_checksum(const std::string& text, std::span<const std::byte> vector);
+
 /// Of the three vectors as they are stored.
 std::string embedding_checksum(std::span<const std::byte> motion, std::span<const std::byte> parts,
                                std::span<const std::byte> text);

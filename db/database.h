@@ -49,6 +49,12 @@ struct EmbeddingChanges {
   std::vector<int64_t> absent;   ///< have none, or are gone
 };
 
+/// A caption, or another text, with the vector that a sentence encoder made of it.
+struct CaptionVector {
+  std::string text;
+  std::vector<float> vector;  ///< L2-normalised
+};
+
 enum class OpenMode { read_only, read_write, create };
 
 /// The motion database: one SQLite file (WAL), the truth of everything that is
@@ -102,6 +108,9 @@ class Database {
   /// then by id; negative `limit`: all. Throws Error for an invalid query.
   std::vector<CaptionMatch> match_captions(const std::string& fts_query, int limit = -1) const;
 
+  /// Whether a caption of this clip answers such a query.
+  bool clip_has_words(int64_t clip_id, const std::string& fts_query) const;
+
   // The import log.
 
   /// Notes of one import, so that it can go on and be repeated: the fingerprint
@@ -141,6 +150,21 @@ class Database {
   std::vector<std::string> retrievers() const;
   /// Of one clip; nothing when this retriever has not embedded it.
   std::optional<ClipEmbedding> embedding(const std::string& retriever_hash, int64_t clip_id) const;
+
+  // Vectors of captions, made by sentence encoders.
+
+  /// Captions, each once and ascending, of which this encoder has no vector here.
+  std::vector<std::string> captions_without_vector(const std::string& encoder_hash) const;
+  /// Stores vectors; those of other texts stay.
+  void add_caption_vectors(const std::string& encoder_hash,
+                           const std::vector<CaptionVector>& vectors);
+  /// Removes the vectors of this encoder whose captions no clip has any more, and those of other
+  /// encoders; returns how many.
+  int64_t drop_unused_caption_vectors(const std::string& encoder_hash);
+  /// By text, ascending. Throws Error for a vector that is damaged.
+  std::vector<CaptionVector> caption_vectors(const std::string& encoder_hash) const;
+  /// Encoders of which vectors are stored.
+  std::vector<std::string> caption_encoders() const;
 
   // Facts.
 

@@ -61,6 +61,10 @@ struct Database::Impl {
     return connection.integer("PRAGMA user_version") >= kChecksumVersion;
   }
 
+  bool has_caption_vectors() const {
+    return connection.integer("PRAGMA user_version") >= kCaptionVectorVersion;
+  }
+
   std::optional<std::string> fact(const std::string& key) const {
     SqliteStatement statement(connection, "SELECT value FROM fact WHERE key = ?");
     statement.bind(1, key);

@@ -99,6 +99,13 @@ class Merger {
     }
   }
 
+  /// Those that no caption here needs go with the next index command.
+  void store_caption_vectors() {
+    for (const std::string& encoder : other_.caption_encoders()) {
+      target_.add_caption_vectors(encoder, other_.caption_vectors(encoder));
+    }
+  }
+
   MergeReport report() && { return std::move(report_); }
 
  private:
@@ -218,6 +225,7 @@ MergeReport merge_database(Database& target, const Database& other, const Monito
   merger.store_clips(monitor);
   merger.store_notes();
   merger.store_embeddings();
+  merger.store_caption_vectors();
   transaction.commit();
   return std::move(merger).report();
 }

@@ -146,7 +146,19 @@ ALTER TABLE motion ADD COLUMN checksum TEXT NOT NULL DEFAULT '';
 ALTER TABLE embedding ADD COLUMN checksum TEXT NOT NULL DEFAULT '';
 )sql";
 
-constexpr const char* kVersions[] = {kVersion1, kVersion2, kVersion3, kVersion4};
+// By text and not by clip: many clips share captions, and a caption that comes back needs no new
+// vector.
+constexpr const char* kVersion5 = R"sql(
+CREATE TABLE caption_vector (
+  encoder_hash TEXT NOT NULL,
+  text TEXT NOT NULL,
+  vector BLOB NOT NULL,
+  checksum TEXT NOT NULL,
+  PRIMARY KEY (encoder_hash, text)
+);
+)sql";
+
+constexpr const char* kVersions[] = {kVersion1, kVersion2, kVersion3, kVersion4, kVersion5};
 static_assert(std::size(kVersions) == kSchemaVersion);
 
 void set_version(const SqliteConnection& connection, int64_t version) {
@@ -212,6 +224,11 @@ void upgrade_from_3(const SqliteConnection& connection) {
   connection.execute(kVersion4);
   fill_checksums(connection);
   set_version(connection, 4);
+}
+
+void upgrade_from_4(const SqliteConnection& connection) {
+  connection.execute(kVersion5);
+  set_version(connection, 5);
 }
 
 using SchemaObjects = std::map<std::pair<std::string, std::string>, std::string>;
@@ -333,6 +350,7 @@ void upgrade_schema(const SqliteConnection& connection) {
   if (connection.integer("PRAGMA user_version") == 1) upgrade_from_1(connection);
   if (connection.integer("PRAGMA user_version") == 2) upgrade_from_2(connection);
   if (connection.integer("PRAGMA user_version") == 3) upgrade_from_3(connection);
+  if (connection.integer("PRAGMA user_version") == 4) upgrade_from_4(connection);
   scope.commit();
 }
 

@@ -6,13 +6,15 @@ namespace remomask::db {
 
 /// Marks a SQLite file as a motion database ("RMMK").
 constexpr int64_t kApplicationId = 0x524d4d4b;
-constexpr int64_t kSchemaVersion = 4;
+constexpr int64_t kSchemaVersion = 5;
 /// Files from this version on can be read without an upgrade.
 constexpr int64_t kOldestReadableVersion = 2;
 /// Of the version that keeps a log of the changed vectors and of who wrote.
 constexpr int64_t kLoggingVersion = 3;
 /// Of the version whose clips, motions and vectors have checksums.
 constexpr int64_t kChecksumVersion = 4;
+/// Of the version that keeps vectors of captions.
+constexpr int64_t kCaptionVectorVersion = 5;
 
 /// Makes the tables in an empty file.
 void create_schema(const SqliteConnection& connection);

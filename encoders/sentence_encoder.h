@@ -38,6 +38,10 @@ class SentenceEncoder {
   /// The same for each of many texts.
   std::vector<std::vector<WordState>> words(const std::vector<std::string>& texts) const;
 
+  /// Whether a word, in lower case, is one piece of the vocabulary: of a large vocabulary, that it
+  /// is a word of its language.
+  bool is_word(const std::string& word) const;
+
   int64_t width() const;
   int64_t max_tokens() const;
   bool has_adapter() const;

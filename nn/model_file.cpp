@@ -76,6 +76,10 @@ std::map<std::string, ModelStage> load_model(const std::string& path) {
   return read_stages(path, [](const std::string&) { return true; });
 }
 
+bool has_stage(const std::string& path, const std::string& kind) {
+  return read_stages(path, [](const std::string&) { return false; }).contains(kind);
+}
+
 std::map<std::string, ModelStage> load_stages(const std::string& path,
                                               const std::vector<std::string>& kinds) {
   const auto stages = read_stages(path, [&](const std::string& kind) {

@@ -36,6 +36,9 @@ std::map<std::string, ModelStage> load_stages(const std::string& path,
 /// load_stages() for one.
 ModelStage load_stage(const std::string& path, const std::string& kind);
 
+/// Whether a model file holds a stage of this kind; reads no tensor. Throws as load_model() does.
+bool has_stage(const std::string& path, const std::string& kind);
+
 /// The stage of this kind. Throws FileError that names what the model at `path` does hold.
 const ModelStage& require_stage(const std::map<std::string, ModelStage>& stages,
                                 const std::string& kind, const std::string& path);

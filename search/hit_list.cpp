@@ -52,18 +52,23 @@ class HitList {
   bool refused_last() const { return refused_last_; }
 
   void add(const index::VectorHit& found) {
-    refused_last_ = false;
-    const db::Clip& clip = scene_.state->clip(found.clip_id);
-    if (query_.grouped && !seen_.insert(clip.group).second) return;
     MotionHit hit;
-    hit.clip = clip;
     hit.similarity = found.similarity;
+    if (scene_.calibration) hit.probability = scene_.calibration->probability(found.similarity);
+    add(found.clip_id, std::move(hit));
+  }
+
+  /// A hit of which clip, rank and folded clips are still to be entered.
+  void add(int64_t clip_id, MotionHit hit) {
+    refused_last_ = false;
+    const db::Clip& clip = scene_.state->clip(clip_id);
+    if (query_.grouped && !seen_.insert(clip.group).second) return;
+    hit.clip = clip;
     if (query_.grouped) {
       hit.folded = static_cast<int>(scene_.candidates(scene_.state->groups.at(clip.group))) - 1;
     }
-    if (scene_.calibration) hit.probability = scene_.calibration->probability(found.similarity);
     if (is_refused(hit)) {
-      if (!answer_.refused || found.similarity > answer_.refused->similarity) {
+      if (!answer_.refused || hit.similarity > answer_.refused->similarity) {
         answer_.refused = std::move(hit);
       }
       refused_last_ = true;
@@ -140,6 +145,24 @@ SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
     const bool exhausted = static_cast<int64_t>(found.size()) < wanted || wanted == count;
     if (list.full() || exhausted || list.refused_last()) return list.finish();
   }
+}
+
+SearchAnswer collect_ranked(const SearchScene& scene, const SearchQuery& query,
+                            const std::vector<RankedClip>& ranked) {
+  HitList list(scene, query);
+  for (const RankedClip& clip : ranked) {
+    if (list.full()) break;
+    MotionHit hit;
+    const WordParts& parts = clip.parts;
+    hit.similarity = static_cast<float>(query.by == SearchBy::captions ? parts.best.value_or(-1)
+                                        : query.by == SearchBy::words  ? parts.words
+                                                                       : parts.motion.value_or(-1));
+    if (query.by == SearchBy::all) hit.probability = clip.probability;
+    hit.as_mirrored = clip.as_mirrored;
+    hit.parts = parts;
+    list.add(clip.clip_id, std::move(hit));
+  }
+  return list.finish();
 }
 
 }  // namespace remomask::search

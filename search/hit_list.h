@@ -6,6 +6,7 @@
 #include "remomask/search.h"
 #include "search/query.h"
 #include "search/search_scene.h"
+#include "search/word_ranking.h"
 
 namespace remomask::search {
 
@@ -13,5 +14,9 @@ namespace remomask::search {
 /// if the query says so.
 SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
                           const index::LinearQuery& vectors);
+
+/// The same of a sentence, from the ranking of the clips.
+SearchAnswer collect_ranked(const SearchScene& scene, const SearchQuery& query,
+                            const std::vector<RankedClip>& ranked);
 
 }  // namespace remomask::search

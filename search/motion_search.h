@@ -7,6 +7,7 @@
 #include "remomask/search.h"
 #include "retriever/retriever.h"
 #include "search/query.h"
+#include "search/word_model.h"
 
 namespace remomask::search {
 
@@ -17,6 +18,12 @@ struct FoundClip {
   std::vector<float> text;    ///< mean of the captions [E]; empty for a clip without captions
 };
 
+/// The clips that answer a sentence, and what they say of its words.
+struct FoundClips {
+  std::vector<FoundClip> clips;
+  std::vector<QueryWord> words;
+};
+
 /// Search in a motion database: a model's retriever, the database and its index.
 /// Const functions may be called from several threads; they take turns at the
 /// database and work side by side otherwise. Every search sees one state of the
@@ -25,11 +32,14 @@ class MotionSearch {
  public:
   /// `index_path` empty: beside the database. Throws Error if a file is missing or damaged, or
   /// if the retriever has not embedded the database.
+  /// Without `words` sentences are compared with motions alone (SearchBy::motion).
   MotionSearch(std::shared_ptr<const retriever::Retriever> retriever,
-               const std::string& database_path, const std::string& index_path = "");
-  /// The same with the retriever of a model file.
-  MotionSearch(const std::string& model_path, const std::string& database_path,
+               std::shared_ptr<const WordModel> words, const std::string& database_path,
                const std::string& index_path = "");
+  /// The same with the retriever of a model file and the encoder of a text file; none where
+  /// `text_path` is empty.
+  MotionSearch(const std::string& model_path, const std::string& text_path,
+               const std::string& database_path, const std::string& index_path = "");
   ~MotionSearch();
   MotionSearch(MotionSearch&&) noexcept;
   MotionSearch& operator=(MotionSearch&&) noexcept;
@@ -44,6 +54,10 @@ class MotionSearch {
   /// first.
   std::vector<FoundClip> nearest(const std::vector<float>& query, int k,
                                  const ClipFilter& filter) const;
+
+  /// The `k` best hits of SearchBy::all for a sentence, one of each group, with their vectors; a
+  /// hit that is meant as its mirror image has those of the clip as it is stored.
+  FoundClips find(const std::string& sentence, int k, const ClipFilter& filter) const;
 
   /// The joints of a stored clip. Throws Error for a clip that is not there.
   Motion motion(int64_t clip_id) const;

@@ -13,6 +13,33 @@
 #include "remomask/error.h"
 #include "search/sentence.h"
 
+namespace remomask {
+
+namespace {
+
+constexpr std::pair<SearchBy, const char*> kSearchBy[] = {{SearchBy::all, "all"},
+                                                          {SearchBy::captions, "captions"},
+                                                          {SearchBy::words, "words"},
+                                                          {SearchBy::motion, "motion"}};
+
+}  // namespace
+
+const char* search_by_name(SearchBy by) {
+  for (const auto& [value, name] : kSearchBy) {
+    if (value == by) return name;
+  }
+  return "";
+}
+
+SearchBy parse_search_by(const std::string& name) {
+  for (const auto& [value, known] : kSearchBy) {
+    if (known == name) return value;
+  }
+  throw Error("'" + name + "' is nothing to search by; use all, captions, words or motion");
+}
+
+}  // namespace remomask
+
 namespace remomask::search {
 
 namespace {
@@ -78,12 +105,22 @@ void check_query(const SearchQuery& query) {
       throw Error(fmt::format("{:g} is no probability; it is a number from 0 to 1",
                               *query.min_probability));
     }
-    if (moving) {
-      throw Error("probabilities are known of sentences alone; limit the similarity instead");
+    if (moving || query.by == SearchBy::captions || query.by == SearchBy::words) {
+      throw Error(
+          "probabilities are known of sentences alone, in a search by all or by motion; limit the "
+          "similarity instead");
     }
   }
   if (query.moments && !query.parts.empty()) {
     throw Error("moments are found with the whole body; leave the body parts away");
+  }
+  if (!query.boost_words.empty() && asks_by_words(query)) {
+    throw Error(
+        "a search by words ranks by all words of the sentence; write the words into it, or search "
+        "by motion (--by motion)");
+  }
+  if (query.moments && asks_by_words(query) && query.by == SearchBy::words) {
+    throw Error("moments are found by the motion; search by all, captions or motion");
   }
   check_weight(query.boost_weight, "words");
   if (worded && moving) {
@@ -93,6 +130,10 @@ void check_query(const SearchQuery& query) {
       throw Error("the weights of sentence and motion are both zero; give one of them weight");
     }
   }
+}
+
+bool asks_by_words(const SearchQuery& query) {
+  return query.by != SearchBy::motion && !query.motion && query.like_clip.empty();
 }
 
 index::LinearQuery linear_query(const QueryVectors& vectors, const SearchQuery& query) {

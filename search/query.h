@@ -19,6 +19,9 @@ struct QueryVectors {
   std::vector<float> motion, motion_parts;  ///< [E], [6 P]
 };
 
+/// Whether a query is answered by words: a sentence without a motion, unless it says otherwise.
+bool asks_by_words(const SearchQuery& query);
+
 /// Throws Error for a query that asks for nothing, or for things that exclude
 /// each other.
 void check_query(const SearchQuery& query);

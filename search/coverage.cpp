@@ -1,0 +1,76 @@
+#include "search/coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_set>
+
+namespace remomask::search {
+
+namespace {
+
+// Fitted by eye to tests/data/search_prompts/dev.jsonl: at 0.575 as many words were there as not.
+constexpr double kEvenCosine = 0.575, kCosineScale = 0.035;
+
+double nearest_state(const encoders::WordState& word,
+                     const std::vector<std::vector<encoders::WordState>>& captions) {
+  double nearest = -1;
+  for (const auto& caption : captions) {
+    for (const encoders::WordState& other : caption) {
+      if (is_function_word(other.normal)) continue;
+      nearest = std::max(nearest, dot_product(word.state, other.state));
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+double dot_product(const std::vector<float>& left, const std::vector<float>& right) {
+  return std::inner_product(left.begin(), left.end(), right.begin(), 0.0);
+}
+
+bool is_function_word(const std::string& word) {
+  static const std::unordered_set<std::string> words = {
+      "a",         "an",        "the",    "this",    "that",    "these",      "those",   "some",
+      "any",       "my",        "your",   "his",     "her",     "their",      "its",     "our",
+      "i",         "you",       "he",     "she",     "it",      "we",         "they",    "me",
+      "him",       "them",      "us",     "himself", "herself", "themselves", "itself",  "who",
+      "which",     "there",     "here",   "is",      "are",     "was",        "were",    "be",
+      "been",      "being",     "am",     "do",      "does",    "did",        "has",     "have",
+      "had",       "will",      "would",  "can",     "could",   "should",     "and",     "or",
+      "but",       "then",      "while",  "as",      "so",      "if",         "when",    "of",
+      "to",        "in",        "on",     "at",      "by",      "for",        "from",    "with",
+      "into",      "onto",      "over",   "about",   "through", "after",      "before",  "during",
+      "very",      "just",      "really", "now",     "please",  "like",       "also",    "again",
+      "not",       "no",        "person", "people",  "human",   "man",        "woman",   "men",
+      "women",     "guy",       "girl",   "boy",     "kid",     "child",      "someone", "somebody",
+      "one",       "character", "figure", "player",  "actor",   "robot",      "subject", "make",
+      "makes",     "making",    "let",    "lets",    "get",     "gets",       "motion",  "movement",
+      "animation", "show",      "shows",  "want",    "give"};
+  return words.contains(word);
+}
+
+std::vector<QueryWord> covered_words(const encoders::SentenceEncoder& encoder,
+                                     const CoverageQuestion& question) {
+  std::vector<QueryWord> result;
+  std::vector<std::vector<encoders::WordState>> captions;
+  for (const encoders::WordState& word : encoder.words(question.sentence)) {
+    if (is_function_word(word.normal)) continue;
+    QueryWord one;
+    one.word = word.typed;
+    one.in_captions = question.in_captions(word.normal);
+    if (one.in_captions) {
+      one.covered = 1;
+    } else {
+      if (captions.empty() && !question.captions.empty())
+        captions = encoder.words(question.captions);
+      const double near = nearest_state(word, captions);
+      one.covered = 1 / (1 + std::exp((kEvenCosine - near) / kCosineScale));
+    }
+    result.push_back(std::move(one));
+  }
+  return result;
+}
+
+}  // namespace remomask::search

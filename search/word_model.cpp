@@ -1,0 +1,51 @@
+#include "search/word_model.h"
+
+#include <filesystem>
+
+#include "nn/model_file.h"
+#include "remomask/error.h"
+#include "remomask/library.h"
+
+namespace remomask::search {
+
+namespace {
+
+constexpr const char* kScoreStage = "text-score";
+
+WordScore read_score(const nn::ModelStage& stage, const std::string& path) {
+  try {
+    return stage.config.get<WordScore>();
+  } catch (const nlohmann::json::exception& error) {
+    throw FileError(path, 0,
+                    std::string("its search score is damaged: ") + error.what() +
+                        "; fit it again: remomask evaluate search --fit");
+  }
+}
+
+}  // namespace
+
+WordModel WordModel::open(const std::string& path) {
+  WordModel model;
+  model.encoder =
+      std::make_shared<const encoders::SentenceEncoder>(encoders::SentenceEncoder::open(path));
+  if (nn::has_stage(path, kScoreStage)) {
+    model.score = read_score(nn::load_stage(path, kScoreStage), path);
+  }
+  return model;
+}
+
+void store_word_score(const std::string& path, const WordScore& score) {
+  std::vector<nn::ModelStage> stages;
+  for (auto& [kind, stage] : nn::load_model(path)) {
+    if (kind != kScoreStage) stages.push_back(std::move(stage));
+  }
+  stages.push_back({kScoreStage, score, {}});
+  nn::save_model(path, stages, true);
+}
+
+std::string text_file_of(const std::string& model_path) {
+  const auto beside = std::filesystem::path(model_path).replace_filename("text.safetensors");
+  return std::filesystem::exists(beside) ? beside.string() : shipped_file("text.safetensors");
+}
+
+}  // namespace remomask::search

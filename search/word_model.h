@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "encoders/sentence_encoder.h"
+#include "search/word_score.h"
+
+namespace remomask::search {
+
+/// What a text file holds for search: the sentence encoder, and the score that was fitted to it.
+struct WordModel {
+  std::shared_ptr<const encoders::SentenceEncoder> encoder;
+  std::optional<WordScore> score;  ///< none: hits have no probability and cannot be fused
+
+  /// Throws FileError as SentenceEncoder::open() does, and for a score that is damaged.
+  static WordModel open(const std::string& path);
+};
+
+/// Puts the score into a text file in place of the one that it has.
+void store_word_score(const std::string& path, const WordScore& score);
+
+/// Where the text file of a model is: "text.safetensors" beside the model, else the shipped one.
+std::string text_file_of(const std::string& model_path);
+
+}  // namespace remomask::search
