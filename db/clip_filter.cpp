@@ -111,13 +111,16 @@ bool clip_matches(const Clip& clip, const ClipFilter& filter) {
   if (filter.exclude_mirrored && clip.mirrored) return false;
   if (filter.excluded_clips.contains(clip.id)) return false;
   if (filter.excluded_groups.contains(clip.group)) return false;
-  return std::all_of(filter.labels.begin(), filter.labels.end(), [&](const auto& condition) {
-    const nlohmann::json* label = find_label(clip.labels, condition.key);
-    return label && label_equals(*label, condition.value);
-  });
+  return std::all_of(filter.labels.begin(), filter.labels.end(),
+                     [&](const auto& condition) { return has_label(clip.labels, condition); });
 }
 
 }  // namespace
+
+bool has_label(const nlohmann::json& labels, const LabelCondition& condition) {
+  const nlohmann::json* label = find_label(labels, condition.key);
+  return label && label_equals(*label, condition.value);
+}
 
 LabelCondition parse_label_condition(const std::string& text) {
   const size_t equals = text.find('=');

@@ -13,6 +13,9 @@ namespace remomask::db {
 /// "key=value" -> condition. Throws Error when there is no "=" or no key.
 LabelCondition parse_label_condition(const std::string& text);
 
+/// Whether a clip's labels answer a condition.
+bool has_label(const nlohmann::json& labels, const LabelCondition& condition);
+
 /// Ids of the clips that pass, ascending. Throws Error for a split that cannot
 /// exist, for a label key, tag or licence that no clip has (a typing mistake
 /// would silently find nothing), for a minimum above the maximum, and for a

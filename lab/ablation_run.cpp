@@ -32,8 +32,8 @@ class TrainingSource final : public pipeline::EvidenceSource {
                  int own_group)
       : data_(data), train_(train), own_group_(own_group) {}
 
-  std::vector<search::FoundClip> find(const std::vector<float>& query, int k,
-                                      const ClipFilter&) const override {
+  search::FoundClips find(const std::string&, const std::vector<float>& query, int k,
+                          const ClipFilter&) const override {
     const at::Tensor vector = torch::tensor(query);
     const at::Tensor similarity = data_.motion.matmul(vector);
     const at::Tensor order = torch::argsort(similarity, 0, /*descending=*/true);
@@ -51,7 +51,7 @@ class TrainingSource final : public pipeline::EvidenceSource {
       hit.text = nn::float_vector(data_.motion_text[clip]);
       found.push_back(std::move(hit));
     }
-    return found;
+    return {std::move(found), {}};
   }
 
   Motion motion(int64_t clip) const override {

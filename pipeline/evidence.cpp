@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "motion/canonical.h"
+#include "motion/features.h"
+#include "nn/tensor_values.h"
+#include "text/caption.h"
+#include "text/caption_mirror.h"
+
 namespace remomask {
 
 const char* evidence_use_name(EvidenceUse use) {
@@ -23,13 +29,42 @@ const char* evidence_use_name(EvidenceUse use) {
 
 namespace remomask::pipeline {
 
+namespace {
+
+double cosine(const std::vector<float>& left, const std::vector<float>& right) {
+  return std::inner_product(left.begin(), left.end(), right.begin(), 0.0);
+}
+
+/// Makes of a hit its mirror image: the vectors are made anew; returns the mirrored motion.
+Motion mirror_hit(const Generator& generator, const EvidenceSource& source,
+                  search::FoundClip& found) {
+  const retriever::Retriever& retriever = generator.retriever();
+  const Skeleton& skeleton = generator.skeleton();
+  const Motion image = motion::mirror_motion(source.motion(found.hit.clip.id), skeleton);
+  const motion::Features features =
+      motion::extract_features_all_frames(image, skeleton, retriever.feature_mode());
+  found.motion = nn::float_vector(retriever.encode_motion({&features}).global[0]);
+  std::vector<std::string> captions;
+  for (const std::string& caption : found.hit.clip.captions) {
+    const std::string mirrored = text::mirror_caption(text::normalise_caption(caption));
+    if (!mirrored.empty()) captions.push_back(mirrored);
+  }
+  const at::Tensor mean = retriever.encode_text(captions).query.mean(0);
+  found.text = nn::float_vector(mean / mean.norm());
+  return image;
+}
+
+}  // namespace
+
 FoundEvidence find_evidence(const Generator& generator, const EvidenceSource& source,
                             const std::string& sentence, const GenerateOptions& options) {
   FoundEvidence result;
   const auto k = static_cast<int>(generator.max_hits());
   if (!options.use_retrieval || k == 0) return result;
   const std::vector<float> query = generator.sentence_vector(sentence);
-  for (search::FoundClip& found : source.find(query, k, options.evidence)) {
+  search::FoundClips all = source.find(sentence, query, k, options.evidence);
+  result.words = std::move(all.words);
+  for (search::FoundClip& found : all.clips) {
     Evidence evidence;
     evidence.hit = found.hit;
     if (found.text.empty()) {
@@ -39,14 +74,20 @@ FoundEvidence find_evidence(const Generator& generator, const EvidenceSource& so
     }
     RetrievedMotion motion;
     motion.clip_id = found.hit.clip.id;
-    motion.similarity = found.hit.similarity;
-    motion.caption_similarity =
-        std::inner_product(query.begin(), query.end(), found.text.begin(), 0.0);
+    motion.probability = found.hit.probability;
     motion.frames = found.hit.clip.frames;
+    if (found.hit.as_mirrored) {
+      motion.poses = mirror_hit(generator, source, found);
+    }
+    motion.similarity = cosine(query, found.motion);
+    motion.caption_similarity = cosine(query, found.text);
     motion.motion = std::move(found.motion);
     motion.text = std::move(found.text);
-    if (options.follow > 0 ||
-        static_cast<int64_t>(result.motions.size()) < generator.sequence_hits()) {
+    const bool sequence = options.follow > 0 ||
+                          static_cast<int64_t>(result.motions.size()) < generator.sequence_hits();
+    if (!sequence) {
+      motion.poses.reset();
+    } else if (!motion.poses) {
       motion.poses = source.motion(motion.clip_id);
     }
     evidence.caption_similarity = motion.caption_similarity;

@@ -15,9 +15,9 @@ class EvidenceSource {
  public:
   virtual ~EvidenceSource() = default;
 
-  /// The `k` clips most similar to a sentence's vector [E], one of each group, best first.
-  virtual std::vector<search::FoundClip> find(const std::vector<float>& query, int k,
-                                              const ClipFilter& filter) const = 0;
+  /// The `k` clips that answer a sentence best, one of each group. `query` is its vector [E].
+  virtual search::FoundClips find(const std::string& sentence, const std::vector<float>& query,
+                                  int k, const ClipFilter& filter) const = 0;
   /// The joints of a clip that find() returned.
   virtual Motion motion(int64_t clip_id) const = 0;
 };
@@ -26,6 +26,7 @@ class EvidenceSource {
 struct FoundEvidence {
   std::vector<Evidence> evidence;        ///< every hit
   std::vector<RetrievedMotion> motions;  ///< the hits that have captions, in the same order
+  std::vector<QueryWord> words;          ///< of the sentence
 };
 
 /// Retrieves for a sentence what the generator can read. This is the only place where evidence

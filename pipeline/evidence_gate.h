@@ -14,9 +14,13 @@ struct SimilarityGate {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SimilarityGate, none, all)
 
-/// How far a generator may trust a hit, by what is known of it: the cosine of sentence and
-/// motion, and the cosine of the sentence and the hit's captions (R_t). One of them is enough:
-/// motions unlike all that the retriever was trained on are told by their captions alone.
+/// Hits that a search by words found are trusted by their probability: a hit that is more likely
+/// wrong than right is not read, and one that is right four times in five in full.
+inline constexpr SimilarityGate kProbabilityGate{0.5, 0.8};
+
+/// How far a generator may trust a hit without a probability, by what is known of it: the cosine of
+/// sentence and motion, and the cosine of the sentence and the hit's captions (R_t). One of them is
+/// enough: motions unlike all that the retriever was trained on are told by their captions alone.
 struct EvidenceGate {
   SimilarityGate motion, caption;
 

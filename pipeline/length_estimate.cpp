@@ -13,7 +13,7 @@ namespace remomask::pipeline {
 namespace {
 
 constexpr auto kMinTokens = static_cast<int64_t>(kMinMotionSeconds * kFps) / kFramesPerToken;
-constexpr double kSimilarityScale = 0.05, kTokenSeconds = 0.2;
+constexpr double kLikenessScale = 0.1, kTokenSeconds = 0.2;
 constexpr uint64_t kLengthStream = 0x6c656e67;
 
 }  // namespace
@@ -34,11 +34,11 @@ std::vector<double> length_distribution(const std::vector<LengthNeighbour>& neig
   std::vector<double> result(kMaxTokenFrames + 1, 0);
   double best = -1;
   for (const auto& neighbour : neighbours) {
-    if (neighbour.frames > 0) best = std::max(best, neighbour.similarity);
+    if (neighbour.frames > 0) best = std::max(best, neighbour.likeness);
   }
   for (const auto& neighbour : neighbours) {
     if (neighbour.frames <= 0) continue;
-    const double weight = std::exp((neighbour.similarity - best) / kSimilarityScale);
+    const double weight = std::exp((neighbour.likeness - best) / kLikenessScale);
     const int64_t tokens = std::clamp<int64_t>(
         (neighbour.frames + kFramesPerToken / 2) / kFramesPerToken, kMinTokens, kMaxTokenFrames);
     for (int64_t offset = -2; offset <= 2; ++offset) {

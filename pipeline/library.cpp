@@ -1,11 +1,14 @@
 #include "remomask/library.h"
 
 #include "db/storing_database.h"
+#include "encoders/sentence_encoder.h"
 #include "exchange/add_files.h"
 #include "index/update_index.h"
 #include "nn/model_file.h"
 #include "remomask/error.h"
 #include "retriever/embed_database.h"
+#include "search/embed_captions.h"
+#include "search/word_model.h"
 
 namespace remomask {
 
@@ -40,6 +43,8 @@ IndexReport index_database(const std::string& database_path, const std::string& 
   db::Database database(database_path, db::OpenMode::read_write);
   IndexReport report;
   report.embedded = retriever::embed_database(database, retriever, monitor);
+  const auto encoder = encoders::SentenceEncoder::open(search::text_file_of(model));
+  search::embed_captions(database, encoder, monitor);
   report.indexed = index::update_index(index::default_index_path(database_path), database,
                                        retriever.hash(), {}, monitor)
                        .count;

@@ -34,6 +34,7 @@ ScriptedMotion make_long_motion(const Generator& generator, const FindEvidence& 
     ScriptedSegment segment;
     segment.sentence = line.sentence;
     segment.evidence = std::move(found.evidence);
+    segment.words = std::move(found.words);
     result.segments.push_back(std::move(segment));
     segments.push_back({line.sentence, std::move(found.motions), line.seconds});
   }

@@ -54,7 +54,7 @@ json motion_json(const char* kind, const Motion& motion, uint64_t seed,
 }
 
 json segment_json(const std::string& sentence, int first, int last, uint64_t seed,
-                  const std::vector<Evidence>& evidence) {
+                  const std::vector<Evidence>& evidence, const std::vector<QueryWord>& words) {
   json followed = nullptr;
   for (const Evidence& entry : evidence) {
     if (entry.followed_share <= 0) continue;
@@ -62,24 +62,51 @@ json segment_json(const std::string& sentence, int first, int last, uint64_t see
                 {"clip", entry.hit.clip.name},
                 {"share", entry.followed_share}};
   }
-  return {{"sentence", sentence}, {"first", first},
-          {"last", last},         {"candidate_seed", seed_json(seed)},
-          {"followed", followed}, {"evidence", evidence_document(evidence)}};
+  return {{"sentence", sentence},
+          {"first", first},
+          {"last", last},
+          {"candidate_seed", seed_json(seed)},
+          {"followed", followed},
+          {"evidence", evidence_document(evidence)},
+          {"words", words_document(words)}};
 }
 
 json single_segment(const Provenance& made, int frames) {
-  json segment = segment_json(made.sentence, 0, frames, made.candidate_seed, made.evidence);
+  json segment =
+      segment_json(made.sentence, 0, frames, made.candidate_seed, made.evidence, made.words);
   segment["candidates"] = candidates_json(made.candidates);
   return segment;
 }
 
 }  // namespace
 
+json words_document(const std::vector<QueryWord>& words) {
+  json list = json::array();
+  for (const QueryWord& word : words) {
+    list.push_back({{"word", word.word},
+                    {"covered", word.covered},
+                    {"in_captions", word.in_captions},
+                    {"found", word.covered >= kCoveredWord}});
+  }
+  return list;
+}
+
 json hit_document(const MotionHit& hit) {
+  json parts = nullptr;
+  if (hit.parts) {
+    parts = {{"caption", hit.parts->caption},
+             {"best", optional_json(hit.parts->best)},
+             {"mean", optional_json(hit.parts->mean)},
+             {"words", hit.parts->words},
+             {"motion", optional_json(hit.parts->motion)}};
+  }
   return {{"rank", hit.rank},
           {"clip_id", hit.clip.id},
           {"clip", hit.clip.name},
           {"similarity", hit.similarity},
+          {"probability", optional_json(hit.probability)},
+          {"as_mirrored", hit.as_mirrored},
+          {"parts", parts},
           {"captions", hit.clip.captions},
           {"source", hit.clip.source},
           {"licence", hit.clip.licence},
@@ -131,7 +158,7 @@ json motion_document(const ScriptedMotion& made) {
   json segments = json::array();
   for (const ScriptedSegment& segment : made.segments) {
     json item = segment_json(segment.sentence, segment.first, segment.last, segment.candidate_seed,
-                             segment.evidence);
+                             segment.evidence, segment.words);
     item["score"] = segment.score;
     item["lowest_foot"] = segment.lowest_foot;
     item["highest_lowest_foot"] = segment.highest_lowest_foot;

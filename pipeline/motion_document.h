@@ -11,6 +11,7 @@ namespace remomask::pipeline {
 // every motion has the same members, and a list of segments. Seeds are strings, since 64 bits do
 // not fit the numbers of JavaScript and many other readers.
 
+nlohmann::json words_document(const std::vector<QueryWord>& words);
 nlohmann::json hit_document(const MotionHit& hit);
 nlohmann::json evidence_document(const std::vector<Evidence>& evidence);
 

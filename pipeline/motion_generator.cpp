@@ -148,8 +148,8 @@ struct Generator::Impl {
     return result;
   }
 
-  /// 0 to 1; a model without a gate trusts every hit.
   double trust(const RetrievedMotion& hit) const {
+    if (hit.probability) return kProbabilityGate.trust(*hit.probability);
     return gate ? gate->trust(hit.similarity, hit.caption_similarity) : 1;
   }
 

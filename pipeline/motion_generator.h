@@ -23,7 +23,9 @@ struct RetrievedMotion {
   std::vector<float> text;         ///< R_t
   double similarity = 0;           ///< cosine of prompt and motion
   double caption_similarity = -1;  ///< cosine of prompt and R_t, which the evidence gate reads too
-  int frames = 0;                  ///< its length at the skeleton's rate; 0: unknown
+  /// That it shows what the prompt asks for, where a search by words found it.
+  std::optional<double> probability;
+  int frames = 0;  ///< its length at the skeleton's rate; 0: unknown
   /// Its motion, for models that read hits frame by frame (sequence_hits());
   /// without it the hit is its vectors only.
   std::optional<Motion> poses;
@@ -99,7 +101,8 @@ class Generator {
   /// fits is better made from the text alone. None without `options.use_retrieval`.
   std::vector<RetrievedMotion> read_hits(const std::vector<RetrievedMotion>& hits,
                                          const GenerateOptions& options) const;
-  /// How far the model's evidence gate trusts a hit, 0 to 1; 1 for a model without a gate.
+  /// How far a hit is trusted, 0 to 1: by its probability (kProbabilityGate); without one, by the
+  /// model's evidence gate, and in full by a model without a gate.
   double trust(const RetrievedMotion& hit) const;
   /// The retriever's vector of a sentence [E], L2-normalised.
   std::vector<float> sentence_vector(const std::string& sentence) const;

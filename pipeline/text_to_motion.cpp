@@ -29,9 +29,9 @@ class DatabaseSource final : public EvidenceSource {
  public:
   explicit DatabaseSource(const search::MotionSearch& search) : search_(search) {}
 
-  std::vector<search::FoundClip> find(const std::vector<float>& query, int k,
-                                      const ClipFilter& filter) const override {
-    return search_.nearest(query, k, filter);
+  search::FoundClips find(const std::string& sentence, const std::vector<float>&, int k,
+                          const ClipFilter& filter) const override {
+    return search_.find(sentence, k, filter);
   }
   Motion motion(int64_t clip_id) const override { return search_.motion(clip_id); }
 
@@ -112,7 +112,11 @@ struct TextToMotion::Impl {
         retriever(std::make_shared<retriever::Retriever>(nn::load_stage(model_file, "retriever"))),
         database_uuid(db::Database(database_file, db::OpenMode::read_only).uuid()) {
     if (!options.retrieval) return;
-    opened_search = std::make_unique<search::MotionSearch>(retriever, database_file, open.index);
+    const std::string text_file =
+        options.text.empty() ? search::text_file_of(model_file) : options.text;
+    opened_search = std::make_unique<search::MotionSearch>(
+        retriever, std::make_shared<search::WordModel>(search::WordModel::open(text_file)),
+        database_file, open.index);
   }
 
   const search::MotionSearch& search() const {
@@ -140,15 +144,15 @@ struct TextToMotion::Impl {
   }
 
   /// Sets the seconds where nothing else gives them.
-  LengthChoice choose_length(const std::vector<float>& query, GenerateOptions& one) const {
+  LengthChoice choose_length(const std::string& sentence, GenerateOptions& one) const {
     LengthChoice choice;
     choice.given = one.seconds.has_value();
     choice.rule = one.length;
     if (choice.given || choice.rule == LengthRule::evidence) return choice;
     std::vector<pipeline::LengthNeighbour> neighbours;
     for (const search::FoundClip& found :
-         search().nearest(query, pipeline::kLengthNeighbours, one.evidence)) {
-      neighbours.push_back({found.hit.similarity, found.hit.clip.frames});
+         search().find(sentence, pipeline::kLengthNeighbours, one.evidence).clips) {
+      neighbours.push_back({found.hit.probability.value_or(0), found.hit.clip.frames});
     }
     choice.neighbours = static_cast<int>(neighbours.size());
     choice.distribution = pipeline::length_distribution(neighbours);
@@ -195,7 +199,7 @@ GeneratedMotion TextToMotion::generate(const std::string& sentence, const Genera
     Made made;
     made.options = options;
     made.options.seed = seed;
-    made.length = impl_->choose_length(query, made.options);
+    made.length = impl_->choose_length(sentence, made.options);
     made.generated = generator.generate(sentence, found.motions, made.options, monitor);
     const Motion motion = made.generated.motion;
     candidates.add(std::move(made), seed, motion);
@@ -212,6 +216,7 @@ GeneratedMotion TextToMotion::generate(const std::string& sentence, const Genera
   result.candidate_seed = candidates.best_seed();
   result.candidates = candidates.ranking();
   result.evidence = std::move(found.evidence);
+  result.words = std::move(found.words);
   result.motion = std::move(best.generated.motion);
   result.length = std::move(best.length);
   result.times = best.generated.times;
@@ -250,6 +255,7 @@ EditedMotion TextToMotion::edit(const Motion& original, std::span<const EditSpan
   result.candidate_seed = candidates.best_seed();
   result.candidates = candidates.ranking();
   result.evidence = std::move(found.evidence);
+  result.words = std::move(found.words);
   result.cells = edited_cells(best.mask);
   result.motion = std::move(best.motion);
   result.tokens = best.tokens;

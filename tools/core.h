@@ -15,6 +15,7 @@ struct EvaluateGenerationCommand;
 struct EvaluateMomentsCommand;
 struct EvaluateQueriesCommand;
 struct EvaluateRetrievalCommand;
+struct EvaluateSearchCommand;
 struct EvaluateTokenizerCommand;
 struct GenerateCommand;
 struct IndexCommand;
@@ -34,6 +35,7 @@ struct Core {
   void (*evaluate_moments)(const EvaluateMomentsCommand&, Program&);
   void (*evaluate_queries)(const EvaluateQueriesCommand&, Program&);
   void (*evaluate_retrieval)(const EvaluateRetrievalCommand&, Program&);
+  void (*evaluate_search)(const EvaluateSearchCommand&, Program&);
   void (*evaluate_tokenizer)(const EvaluateTokenizerCommand&, Program&);
   void (*generate)(const GenerateCommand&, Program&);
   void (*index)(const IndexCommand&, Program&);

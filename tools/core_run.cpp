@@ -22,6 +22,7 @@ extern "C" __attribute__((visibility("default"))) const Core* remomask_core(int 
       .evaluate_moments = run_evaluate_moments,
       .evaluate_queries = run_evaluate_queries,
       .evaluate_retrieval = run_evaluate_retrieval,
+      .evaluate_search = run_evaluate_search,
       .evaluate_tokenizer = run_evaluate_tokenizer,
       .generate = run_generate,
       .index = run_index,

@@ -78,6 +78,25 @@ void register_queries(CLI::App& parent, Program& program) {
   command->callback([options, &program] { core(program).evaluate_queries(*options, program); });
 }
 
+void register_search_prompts(CLI::App& parent, Program& program) {
+  auto options = std::make_shared<EvaluateSearchCommand>();
+  CLI::App* command =
+      add_command(parent, "search", "does search find what people ask for in their own words?",
+                  "remomask evaluate search --db motions.sqlite --prompts prompts.jsonl");
+  options->files.add_model(*command);
+  options->files.add_database(*command);
+  options->filter.add(*command);
+  command
+      ->add_option("--prompts", options->prompts,
+                   "JSON Lines of {\"prompt\": \"...\", \"labels\": {\"actions\": [\"wave\"]}}; "
+                   "labels null: nothing answers it")
+      ->required();
+  command->add_flag("--fit", options->fit,
+                    "fit the score of search to these prompts and store it in the text file");
+  add_resamples(*command, options->resamples);
+  command->callback([options, &program] { core(program).evaluate_search(*options, program); });
+}
+
 void register_evaluator(CLI::App& parent, Program& program) {
   auto options = std::make_shared<EvaluateEvaluatorCommand>();
   CLI::App* command = add_command(parent, "evaluator",
@@ -155,6 +174,7 @@ void register_evaluate(CLI::App& app, Program& program) {
   register_calibration(*command, program);
   register_moments(*command, program);
   register_queries(*command, program);
+  register_search_prompts(*command, program);
   register_evaluator(*command, program);
   register_tokenizer(*command, program);
   register_generation(*command, program);

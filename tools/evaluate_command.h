@@ -61,6 +61,14 @@ struct EvaluateQueriesCommand {
   std::optional<int> resamples;
 };
 
+struct EvaluateSearchCommand {
+  FileOptions files;
+  FilterOptions filter;
+  std::string prompts;
+  bool fit = false;
+  std::optional<int> resamples;
+};
+
 struct EvaluateEvaluatorCommand {
   EvaluationInput input;
   EvaluatorOption evaluator;
@@ -86,6 +94,7 @@ void run_evaluate_retrieval(const EvaluateRetrievalCommand& command, Program& pr
 void run_evaluate_calibration(const EvaluateCalibrationCommand& command, Program& program);
 void run_evaluate_moments(const EvaluateMomentsCommand& command, Program& program);
 void run_evaluate_queries(const EvaluateQueriesCommand& command, Program& program);
+void run_evaluate_search(const EvaluateSearchCommand& command, Program& program);
 void run_evaluate_evaluator(const EvaluateEvaluatorCommand& command, Program& program);
 void run_evaluate_tokenizer(const EvaluateTokenizerCommand& command, Program& program);
 void run_evaluate_generation(const EvaluateGenerationCommand& command, Program& program);

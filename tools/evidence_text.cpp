@@ -23,7 +23,10 @@ std::string stored_evidence_line(const nlohmann::json& evidence) {
   for (const auto& hit : evidence) {
     // Version 0.1 did not always say which hits were read: then all were.
     if (!hit.value("read", true)) continue;
-    append_hit(line, hit.at("clip").get<std::string>(), hit.at("similarity").get<double>());
+    const auto probability = hit.find("probability");
+    const bool known = probability != hit.end() && probability->is_number();
+    append_hit(line, hit.at("clip").get<std::string>(),
+               known ? probability->get<double>() : hit.at("similarity").get<double>());
   }
   return line;
 }
@@ -50,7 +53,8 @@ std::string evidence_line(const std::vector<Evidence>& evidence) {
   std::string line;
   for (const Evidence& entry : evidence) {
     if (entry.use != EvidenceUse::read) continue;
-    append_hit(line, entry.hit.clip.name, entry.hit.similarity);
+    append_hit(line, entry.hit.clip.name,
+               entry.hit.probability.value_or(static_cast<double>(entry.hit.similarity)));
   }
   return line;
 }
@@ -62,6 +66,22 @@ std::string evidence_refusal(const std::vector<Evidence>& evidence) {
   return wordless ? "made from the text alone; the retrieved clips have no captions, without which "
                     "they cannot be read (remomask db tag --set-caption adds one)"
                   : "made from the text alone; none of the retrieved motions fits";
+}
+
+std::string words_text(const std::vector<QueryWord>& words,
+                       const std::vector<CorrectedWord>& corrected) {
+  std::string text;
+  for (const CorrectedWord& word : corrected) {
+    text += fmt::format("read \"{}\" as \"{}\"; ", word.typed, word.read);
+  }
+  std::string missing;
+  for (const QueryWord& word : words) {
+    if (word.covered >= kCoveredWord) continue;
+    missing += fmt::format("{}\"{}\"", missing.empty() ? "" : ", ", word.word);
+  }
+  if (!missing.empty()) text += "nothing in this database shows " + missing + "; nearest:";
+  if (text.ends_with("; ")) text.resize(text.size() - 2);
+  return text;
 }
 
 SidecarText read_sidecar_text(const std::string& motion_path) {

@@ -14,6 +14,11 @@ std::string evidence_line(const std::vector<Evidence>& evidence);
 /// Why none of the retrieved motions was read, in a sentence for people.
 std::string evidence_refusal(const std::vector<Evidence>& evidence);
 
+/// What was not understood, in a line for people: typing errors that were corrected, and words that
+/// nothing in the database shows. Empty where all was.
+std::string words_text(const std::vector<QueryWord>& words,
+                       const std::vector<CorrectedWord>& corrected = {});
+
 /// Title and subtitle of a motion file for a contact sheet, from its sidecar; empty without one.
 /// Sidecars of version 0.1, whose members are strings, are read, too. Throws FileError for a
 /// sidecar that is neither.

@@ -24,16 +24,24 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void print_evidence(const std::vector<Evidence>& evidence) {
+/// The probability of a hit, else its similarity.
+std::string likeness_text(const MotionHit& hit) {
+  return hit.probability ? fmt::format("{:.0f} %", 100 * *hit.probability)
+                         : fmt::format("{:.3f}", hit.similarity);
+}
+
+void print_evidence(const std::vector<Evidence>& evidence, const std::vector<QueryWord>& words) {
   const auto is_read = [](const Evidence& entry) { return entry.use == EvidenceUse::read; };
   const bool any = std::any_of(evidence.begin(), evidence.end(), is_read);
   if (evidence.empty()) return;
+  const std::string missing = words_text(words);
+  if (!missing.empty()) fmt::print("{}\n", missing);
   fmt::print("{}\n", any ? "made from the retrieved motions" : evidence_refusal(evidence));
   for (const Evidence& entry : evidence) {
     if (any && !is_read(entry)) continue;
     const std::string influence =
         entry.influence ? fmt::format("{:3.0f} %  ", 100 * *entry.influence) : "";
-    fmt::print("  {:.3f}  {}{:<28} {}\n", entry.hit.similarity, influence, entry.hit.clip.name,
+    fmt::print("  {:>6}  {}{:<28} {}\n", likeness_text(entry.hit), influence, entry.hit.clip.name,
                entry.hit.clip.captions.empty() ? "" : entry.hit.clip.captions.front());
   }
 }
@@ -142,7 +150,7 @@ void run_generate(const GenerateCommand& command, Program& program) {
       fmt::print("{}: {} ({:.1f} s of motion) in {:.2f} s, seed {}\n", path,
                  counted(made.motion.frames, "frame"), made.motion.seconds(), seconds, made.seed);
       print_followed(made.evidence);
-      if (i == 0 || options.influence) print_evidence(made.evidence);
+      if (i == 0 || options.influence) print_evidence(made.evidence, made.words);
     }
     print_written(written, program);
     ++options.seed;

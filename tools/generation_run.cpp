@@ -10,6 +10,7 @@ namespace remomask::tools {
 TextToMotion open_model(const FileOptions& files, const Program& program, bool retrieval) {
   OpenOptions open;
   open.index = files.index;
+  open.text = retrieval ? files.text_path() : files.text;
   open.threads = program.threads;
   open.retrieval = retrieval;
   return TextToMotion(files.model_path(), files.database_path(), open);

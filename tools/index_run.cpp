@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include "base/counted.h"
+#include "encoders/sentence_encoder.h"
 #include "index/update_index.h"
 #include "nn/model_file.h"
 #include "retriever/embed_database.h"
+#include "search/embed_captions.h"
 #include "tools/index_command.h"
 #include "tools/index_path.h"
 
@@ -18,7 +20,7 @@ std::string describe_type(const index::IndexType& type) {
   return text + (type.recall ? fmt::format(", recall@10 {:.3f}", *type.recall) : ", exact");
 }
 
-nlohmann::json update_json(const FileOptions& files, int64_t embedded,
+nlohmann::json update_json(const FileOptions& files, int64_t embedded, int64_t captions,
                            const index::IndexUpdate& made) {
   nlohmann::json document = {{"index", index_path(files)},
                              {"clips", made.count},
@@ -28,6 +30,7 @@ nlohmann::json update_json(const FileOptions& files, int64_t embedded,
                              {"search_parameters", made.type.search_parameters},
                              {"recall_at_10", nullptr},
                              {"embedded", embedded},
+                             {"captions_embedded", captions},
                              {"added", made.difference.added},
                              {"dropped", made.difference.dropped},
                              {"rebuilt", nullptr}};
@@ -44,6 +47,9 @@ void run_index(const IndexCommand& command, Program& program) {
   db::Database database(command.files.database_path(), db::OpenMode::read_write);
   const Monitor monitor = program.monitor();
   const int64_t embedded = retriever::embed_database(database, retriever, monitor);
+  const auto encoder = encoders::SentenceEncoder::open(command.files.text_path());
+  if (command.rebuild) database.drop_unused_caption_vectors("");
+  const int64_t captions = search::embed_captions(database, encoder, monitor);
   index::UpdateOptions update;
   update.rebuild = command.rebuild;
   if (command.factory || command.search_parameters) {
@@ -55,12 +61,14 @@ void run_index(const IndexCommand& command, Program& program) {
   const index::IndexUpdate made =
       index::update_index(index_path(command.files), database, retriever.hash(), update, monitor);
   program.finish_progress();
-  if (program.json) return program.print_json(update_json(command.files, embedded, made));
+  if (program.json) {
+    return program.print_json(update_json(command.files, embedded, captions, made));
+  }
   fmt::print("{}: {}, {} numbers each, {}\n", index_path(command.files),
              counted(static_cast<int64_t>(made.count), "clip"), made.width,
              describe_type(made.type));
-  fmt::print("{} embedded, {} added, {} dropped{}\n", counted(embedded, "clip"),
-             made.difference.added, made.difference.dropped,
+  fmt::print("{} and {} embedded, {} added, {} dropped{}\n", counted(embedded, "clip"),
+             counted(captions, "caption"), made.difference.added, made.difference.dropped,
              made.rebuilt.empty() ? "" : "; built anew: " + made.rebuilt);
 }
 

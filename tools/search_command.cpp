@@ -14,6 +14,12 @@ void add_query_options(CLI::App& command, SearchCommand& options) {
   SearchQuery& query = options.query;
   command.add_option("text", query.text,
                      "what to look for; clips with a word that follows a minus are left out");
+  command
+      .add_option("--by", options.by,
+                  "what a sentence is compared with: all (captions, words and motions), captions, "
+                  "words or motion")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"all", "captions", "words", "motion"}));
   command.add_option("--like", options.like_file,
                      "a motion file (BVH, AMC, npy, npz): more like this");
   command.add_option("--from", options.from, "of the motion file: from this second");
@@ -32,7 +38,7 @@ void add_query_options(CLI::App& command, SearchCommand& options) {
   command.add_option("--motion-weight", query.motion_weight, "of the motion")
       ->capture_default_str();
   command.add_option("--boost-words", query.boost_words,
-                     "clips with any of these words in a caption come up");
+                     "clips with any of these words in a caption come up; with --by motion");
   command.add_option("--boost-weight", query.boost_weight, "of the ranking by words")
       ->capture_default_str();
   command.add_flag("--captions", options.captions,
@@ -48,8 +54,7 @@ void add_result_options(CLI::App& command, SearchCommand& options) {
   command.add_option("--min-similarity", options.query.min_similarity,
                      "leave out what is less similar (cosine)");
   command.add_option("--min-probability", options.query.min_probability,
-                     "leave out what is less probably right, by the calibration that \"remomask "
-                     "evaluate calibration --store\" keeps in the database");
+                     "leave out what is less probably right");
   command.add_flag("--moments", options.query.moments, "say where in each clip");
 }
 

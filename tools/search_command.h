@@ -18,6 +18,7 @@ struct SearchCommand {
   std::string like_file;
   MotionFileOptions reading;       ///< of like_file
   std::optional<double> from, to;  ///< seconds of the file
+  std::string by = "all";          ///< name of a SearchBy
   bool ungrouped = false, captions = false;
 };
 

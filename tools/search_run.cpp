@@ -5,6 +5,7 @@
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
 #include "search/query.h"
+#include "tools/evidence_text.h"
 #include "tools/generation_run.h"
 #include "tools/reading_options.h"
 #include "tools/search_command.h"
@@ -17,6 +18,7 @@ SearchQuery complete_query(const SearchCommand& options, Program& program) {
   SearchQuery query = options.query;
   query.filter = options.filter.filter();
   query.grouped = !options.ungrouped;
+  query.by = parse_search_by(options.by);
   if (!options.like_file.empty()) {
     query.motion = load_motion_of_user(options.like_file, options.reading, program);
     if (options.from || options.to) {
@@ -40,7 +42,6 @@ nlohmann::json motion_hit_json(const MotionHit& hit) {
   nlohmann::json json = pipeline::hit_document(hit);
   json["folded"] = hit.folded;
   json["tags"] = hit.clip.tags;
-  if (hit.probability) json["probability"] = *hit.probability;
   if (hit.moment) {
     json["moment"] = {{"start", hit.moment->start},
                       {"end", hit.moment->end},
@@ -49,18 +50,33 @@ nlohmann::json motion_hit_json(const MotionHit& hit) {
   return json;
 }
 
-/// "0.713", with a probability "0.713 (82 %)".
+/// A sentence: the probability, and what it rests on, "92 % (caption 0.87, words 1.00, motion
+/// 0.41)". Else the similarity, "0.713", with a probability "0.713 (82 %)".
 std::string score_text(const MotionHit& hit) {
+  if (hit.parts && hit.probability) {
+    std::string text = fmt::format("{:3.0f} %", 100 * *hit.probability);
+    const WordParts& parts = *hit.parts;
+    text += parts.best ? fmt::format(" (caption {:.2f}, words {:.2f}", *parts.best, parts.words)
+                       : " (no caption";
+    if (parts.motion) text += fmt::format(", motion {:.2f}", *parts.motion);
+    return text + ")";
+  }
   std::string text = fmt::format("{:.3f}", hit.similarity);
   if (hit.probability) text += fmt::format(" ({:.0f} %)", 100 * *hit.probability);
   return text;
+}
+
+/// The caption that answers the sentence best, else the first.
+std::string shown_caption(const MotionHit& hit) {
+  if (hit.parts && !hit.parts->caption.empty()) return hit.parts->caption;
+  return hit.clip.captions.empty() ? "" : hit.clip.captions.front();
 }
 
 void print_hit(const MotionHit& hit) {
   std::string where = fmt::format("{:5.1f} s", clip_seconds(hit.clip));
   if (hit.moment) where += fmt::format(", {:.1f} to {:.1f} s", hit.moment->start, hit.moment->end);
   fmt::print("{:3}  {}  {}  {:<32} {}{}\n", hit.rank, score_text(hit), where, hit.clip.name,
-             hit.clip.captions.empty() ? "" : hit.clip.captions.front(),
+             (hit.as_mirrored ? "(mirrored) " : "") + shown_caption(hit),
              hit.folded > 0 ? fmt::format(" (+{} of the same motion)", hit.folded) : "");
 }
 
@@ -72,6 +88,8 @@ void print_answer(const SearchAnswer& answer) {
                counted(answer.candidates, "clip"), answer.refused->clip.name,
                score_text(*answer.refused));
   }
+  const std::string lead = words_text(answer.words, answer.corrected);
+  if (!lead.empty()) fmt::print("{}\n", lead);
   for (const MotionHit& hit : answer.hits) print_hit(hit);
 }
 
@@ -91,6 +109,12 @@ void search_clips(const SearchCommand& options, Program& program) {
   document["candidates"] = answer.candidates;
   document["clips_without_vectors"] = answer.unsearched;
   if (!query.boost_words.empty()) document["boosted"] = answer.boosted;
+  document["by"] = search_by_name(query.by);
+  document["words"] = pipeline::words_document(answer.words);
+  document["corrected"] = nlohmann::json::array();
+  for (const CorrectedWord& word : answer.corrected) {
+    document["corrected"].push_back({{"typed", word.typed}, {"read", word.read}});
+  }
   document["hits"] = nlohmann::json::array();
   for (const MotionHit& hit : answer.hits) document["hits"].push_back(motion_hit_json(hit));
   if (answer.refused) document["refused"] = motion_hit_json(*answer.refused);

@@ -1,5 +1,7 @@
 #include "tools/workspace.h"
 
+#include <filesystem>
+
 #include "db/captions_index.h"
 #include "db/clip_filter.h"
 #include "remomask/error.h"
@@ -9,6 +11,9 @@ namespace remomask::tools {
 
 void FileOptions::add_model(CLI::App& command) {
   command.add_option("--model", model, "model file (.safetensors); default: the shipped model");
+  command.add_option("--text", text,
+                     "text file (.safetensors) with the sentence encoder; default: "
+                     "text.safetensors beside the model, else the shipped one");
 }
 
 void FileOptions::add_database(CLI::App& command) {
@@ -18,6 +23,12 @@ void FileOptions::add_database(CLI::App& command) {
 
 std::string FileOptions::model_path() const {
   return model.empty() ? shipped_file("base.safetensors") : model;
+}
+
+std::string FileOptions::text_path() const {
+  if (!text.empty()) return text;
+  const auto beside = std::filesystem::path(model_path()).replace_filename("text.safetensors");
+  return std::filesystem::exists(beside) ? beside.string() : shipped_file("text.safetensors");
 }
 
 std::string FileOptions::database_path() const {

@@ -12,11 +12,13 @@ namespace remomask::tools {
 
 /// --model and --db with the shipped files as defaults.
 struct FileOptions {
-  std::string model, database, index;
+  std::string model, database, index, text;
 
+  /// With --text, the file of the sentence encoder that goes with the model.
   void add_model(CLI::App& command);
   void add_database(CLI::App& command);
   std::string model_path() const;
+  std::string text_path() const;
   std::string database_path() const;
 };
 

@@ -91,7 +91,7 @@ REMOMASK_API const char* evidence_use_name(EvidenceUse use);
 struct Evidence {
   MotionHit hit;                   ///< clip, captions, licence, similarity to the sentence
   double caption_similarity = -1;  ///< cosine of the sentence and the clip's mean caption
-  double trust = 0;                ///< by the model's evidence gate, 0 to 1
+  double trust = 0;                ///< how far the generator may follow it, 0 to 1
   EvidenceUse use = EvidenceUse::read;
   double followed_share = 0;        ///< share of the token frames that started as this motion
   std::optional<double> influence;  ///< share of the base tokens that change without this hit
@@ -130,6 +130,7 @@ struct Provenance {
   uint64_t candidate_seed = 0;        ///< of the candidate that was returned
   std::vector<Candidate> candidates;  ///< best first; empty for a single candidate
   std::vector<Evidence> evidence;     ///< best hit first
+  std::vector<QueryWord> words;       ///< of the sentence, and whether the database has them
   std::string generator;              ///< hash of the model, and all settings that matter
   std::string database;               ///< UUID of the database
 };
@@ -164,6 +165,7 @@ struct ScriptedSegment {
   uint64_t candidate_seed = 0;  ///< of the candidate that was chosen
   double score = 0;             ///< of that candidate; 0 for a single candidate
   std::vector<Evidence> evidence;
+  std::vector<QueryWord> words;
   double lowest_foot = 0;              ///< m, lowest foot joint over the frames of the segment
   double highest_lowest_foot = 0;      ///< m, height of the lower foot where it is highest
   std::optional<double> jerk_at_seam;  ///< m/s^3, at the seam before it; unset for the first

@@ -14,7 +14,10 @@ namespace remomask {
 
 struct OpenOptions {
   std::string index;  ///< index file; empty: beside the database
-  int threads = 0;    ///< CPU threads of every call; 0: all that the process may use
+  /// File of the sentence encoder; empty: "text.safetensors" beside the model, else the shipped
+  /// one.
+  std::string text;
+  int threads = 0;  ///< CPU threads of every call; 0: all that the process may use
   /// false: open no index, so that a database without one will do. Then nothing can be searched,
   /// retrieved or generated with retrieval.
   bool retrieval = true;
@@ -39,7 +42,7 @@ struct OpenOptions {
 class REMOMASK_API TextToMotion {
  public:
   /// Throws Error if a file is missing, damaged or of another kind, or if the database was not
-  /// indexed with the model's retriever.
+  /// indexed with the model's retriever and the text file's encoder.
   TextToMotion(const std::string& model, const std::string& database,
                const OpenOptions& options = {});
   ~TextToMotion();
@@ -69,7 +72,7 @@ class REMOMASK_API TextToMotion {
   std::vector<Evidence> retrieve(const std::string& sentence,
                                  const GenerateOptions& options = {}) const;
 
-  /// The clips most similar to the query. If `like_clip` is set, that clip is left out, and so
+  /// The clips that answer the query best. If `like_clip` is set, that clip is left out, and so
   /// is its group if hits are grouped. A clip with an unwanted word in a caption is left out,
   /// too. Exact, except that an approximate index answers queries without filter, words and
   /// body parts. Throws Error for a malformed query.
