@@ -24,7 +24,7 @@ if(NOT BUILD_SHARED_LIBS)
   set(pc_static_flag " -DREMOMASK_STATIC")
   set(pc_static_libraries
     " -ltorch -ltorch_cpu -lc10 -lfaiss -llapack -lblas -lgomp -ldl -lpthread")
-  set(pc_static_requires " sqlite3 fmt libxxhash libarchive tinygltf assimp cairo")
+  set(pc_static_requires " sqlite3 fmt libxxhash libarchive tinygltf assimp cairo libutf8proc")
 endif()
 file(RELATIVE_PATH pc_prefix
   ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})

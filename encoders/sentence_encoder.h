@@ -15,6 +15,9 @@ struct WordState {
   std::vector<float> state;  ///< width() values, unit length
 };
 
+/// Kind of the stage that a text file holds.
+inline constexpr const char* kTextEncoderStage = "text-encoder";
+
 /// A pretrained sentence encoder for inference: texts and words to vectors whose dot product is
 /// their likeness in meaning (1 is equal). What a text gives does not depend on what it is batched
 /// with (1e-5). Const functions may be called from several threads.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "encoders/bert_encoder.h"
 #include "remomask/error.h"
 #include "text/caption.h"
 
@@ -58,12 +59,14 @@ void from_json(const nlohmann::json& json, TextEncoderConfig& config) {
 
 std::shared_ptr<TextTower> make_text_tower(const nlohmann::json& config) {
   const std::string tower = config.value("tower", "");
-  if (tower != "wordpiece_transformer") {
+  if (tower != "wordpiece_transformer" && tower != "bert") {
     throw Error(
         "the model's text tower '" + tower +
-        "' is unknown; this program knows wordpiece_transformer, a newer one may know more");
+        "' is unknown; this program knows wordpiece_transformer and bert, a newer one may know "
+        "more");
   }
   try {
+    if (tower == "bert") return std::make_shared<BertEncoder>(read_bert_config(config));
     return std::make_shared<TextEncoder>(config.get<TextEncoderConfig>());
   } catch (const nlohmann::json::exception& error) {
     throw Error(std::string("the model's text tower is not described completely: ") + error.what());

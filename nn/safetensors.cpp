@@ -23,8 +23,8 @@ struct TensorType {
   at::ScalarType type;
 };
 constexpr TensorType kTensorTypes[] = {
-    {"F32", at::kFloat}, {"F16", at::kHalf}, {"F64", at::kDouble}, {"I64", at::kLong},
-    {"I32", at::kInt},   {"U8", at::kByte},  {"BOOL", at::kBool},
+    {"F32", at::kFloat}, {"F16", at::kHalf}, {"BF16", at::kBFloat16}, {"F64", at::kDouble},
+    {"I64", at::kLong},  {"I32", at::kInt},  {"U8", at::kByte},       {"BOOL", at::kBool},
 };
 
 const char* type_name(at::ScalarType type) {

@@ -18,6 +18,7 @@ struct EvaluateRetrievalCommand;
 struct EvaluateSearchCommand;
 struct EvaluateTokenizerCommand;
 struct GenerateCommand;
+struct ImportTextCommand;
 struct IndexCommand;
 struct SearchCommand;
 struct TrainCommand;
@@ -38,6 +39,7 @@ struct Core {
   void (*evaluate_search)(const EvaluateSearchCommand&, Program&);
   void (*evaluate_tokenizer)(const EvaluateTokenizerCommand&, Program&);
   void (*generate)(const GenerateCommand&, Program&);
+  void (*import_text)(const ImportTextCommand&, Program&);
   void (*index)(const IndexCommand&, Program&);
   void (*model_info)(const std::string&, Program&);
   void (*search)(const SearchCommand&, Program&);

@@ -5,6 +5,7 @@
 #include "tools/edit_command.h"
 #include "tools/evaluate_command.h"
 #include "tools/generate_command.h"
+#include "tools/import_text_command.h"
 #include "tools/index_command.h"
 #include "tools/search_command.h"
 #include "tools/train_command.h"
@@ -25,6 +26,7 @@ extern "C" __attribute__((visibility("default"))) const Core* remomask_core(int 
       .evaluate_search = run_evaluate_search,
       .evaluate_tokenizer = run_evaluate_tokenizer,
       .generate = run_generate,
+      .import_text = run_import_text,
       .index = run_index,
       .model_info = run_model_info,
       .search = run_search,

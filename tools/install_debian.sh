@@ -9,7 +9,7 @@ as_root=""
 packages="g++ cmake ninja-build ccache pkg-config
   libtorch-dev libfaiss-dev libopenblas-pthread-dev libsqlite3-dev
   nlohmann-json3-dev libcli11-dev libfmt-dev libeigen3-dev libxxhash-dev
-  libarchive-dev libtinygltf-dev libassimp-dev libcairo2-dev fonts-dejavu-core libgtest-dev libbenchmark-dev"
+  libarchive-dev libtinygltf-dev libassimp-dev libcairo2-dev libutf8proc-dev fonts-dejavu-core libgtest-dev libbenchmark-dev"
 release=$(. /etc/os-release && echo "${VERSION_CODENAME:-unknown}")
 case $release in
   bookworm | trixie) ;;

@@ -92,10 +92,11 @@ int run(int argc, char** argv) {
       "Exit status: 0 ok, 1 failed, 2 wrong usage, 130 interrupted. \"remomask COMMAND --help\"\n"
       "shows the options of a command and an example.");
   const RegisterCommand commands[] = {
-      register_generate, register_edit,     register_search,   register_import,
-      register_index,    register_train,    register_evaluate, register_convert,
-      register_retarget, register_skeleton, register_sheet,    register_procedural,
-      register_info,     register_check,    register_db,       register_ablate,
+      register_generate,    register_edit,     register_search,   register_import,
+      register_import_text, register_index,    register_train,    register_evaluate,
+      register_convert,     register_retarget, register_skeleton, register_sheet,
+      register_procedural,  register_info,     register_check,    register_db,
+      register_ablate,
   };
   for (const RegisterCommand add : commands) add(app, program);
   try {

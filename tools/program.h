@@ -54,6 +54,7 @@ using RegisterCommand = void (*)(CLI::App& app, Program& program);
 
 void register_ablate(CLI::App& app, Program& program);
 void register_import(CLI::App& app, Program& program);
+void register_import_text(CLI::App& app, Program& program);
 void register_info(CLI::App& app, Program& program);
 void register_index(CLI::App& app, Program& program);
 void register_search(CLI::App& app, Program& program);
