@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
+#include <set>
 
 #include "remomask/error.h"
 
@@ -72,6 +73,34 @@ void check_known(const std::vector<Clip>& clips, const std::string& what, HasIt 
   throw Error("no clip has " + what + "; check how it is written");
 }
 
+void add_texts(const nlohmann::json& label, std::set<std::string>& texts) {
+  if (label.is_string()) texts.insert(label.get<std::string>());
+  if (!label.is_array()) return;
+  for (const nlohmann::json& member : label) add_texts(member, texts);
+}
+
+/// A vocabulary has too many words to list: those that begin like the wrong one
+/// show how it is written.
+void check_label(const std::vector<Clip>& clips, const LabelCondition& condition) {
+  constexpr size_t kAlike = 3;
+  std::set<std::string> texts;
+  for (const Clip& clip : clips) {
+    const nlohmann::json* label = find_label(clip.labels, condition.key);
+    if (label && label_equals(*label, condition.value)) return;
+    if (label) add_texts(*label, texts);
+  }
+  const auto begins_alike = [&](const std::string& text) {
+    return text.compare(0, kAlike, condition.value, 0, kAlike) == 0;
+  };
+  std::string alike;
+  for (const std::string& text : texts) {
+    if (begins_alike(text)) alike += (alike.empty() ? "" : ", ") + text;
+  }
+  throw Error(
+      "no clip has the label " + condition.key + "=" + condition.value +
+      (alike.empty() ? "; check how it is written" : "; values that begin alike: " + alike));
+}
+
 void check_filter(const std::vector<Clip>& clips, const ClipFilter& filter) {
   for (const std::string& split : filter.splits) {
     if (split != "train" && split != "val" && split != "test" && split != "none") {
@@ -84,6 +113,7 @@ void check_filter(const std::vector<Clip>& clips, const ClipFilter& filter) {
     check_known(clips, "a label '" + condition.key + "'", [&](const Clip& clip) {
       return find_label(clip.labels, condition.key) != nullptr;
     });
+    check_label(clips, condition);
   }
   for (const std::string& tag : filter.tags) {
     check_known(clips, "the tag '" + tag + "'",

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "db/attribution.h"
 #include "db/transaction.h"
 #include "remomask/error.h"
 
@@ -103,6 +104,14 @@ class Merger {
   void store_caption_vectors() {
     for (const std::string& encoder : other_.caption_encoders()) {
       target_.add_caption_vectors(encoder, other_.caption_vectors(encoder));
+    }
+  }
+
+  void store_attributions() {
+    std::set<std::string> sources;
+    for (const auto& [source, file] : added_files_) sources.insert(source);
+    for (const std::string& source : sources) {
+      if (const auto text = attribution(other_, source)) add_attribution(target_, source, *text);
     }
   }
 
@@ -224,6 +233,7 @@ MergeReport merge_database(Database& target, const Database& other, const Monito
   Merger merger(target, other);
   merger.store_clips(monitor);
   merger.store_notes();
+  merger.store_attributions();
   merger.store_embeddings();
   merger.store_caption_vectors();
   transaction.commit();

@@ -22,7 +22,7 @@ struct MergeReport {
 };
 
 /// Stores the clips of `other` in `target`, with captions, labels, tags,
-/// licences, splits, vectors and notes of imports; all of them or, when stopped
+/// licences, splits, vectors, notes of imports and attributions; all of them or, when stopped
 /// or on an error, none. A clip whose motion is there already is refused and
 /// reported. Groups of the same name stay apart (the new one gets another name)
 /// unless their labels `trial` or `duplicate_of` gave the name; groups that

@@ -28,7 +28,7 @@ void add_arm_kinds(ProceduralKinds& kinds) {
                     "{lift} " + arm + " above the head and {bring} " + (both ? "them" : "it") +
                         " down",
                     "{raise} " + hand + " up high and {let} " + (both ? "them" : "it") + " down"},
-        .actions = {"raise arm"},
+        .actions = {"raise hand"},
         .shortest = 2.6,
         .longest = 5.5,
         .styles = true,
@@ -62,7 +62,7 @@ void add_arm_kinds(ProceduralKinds& kinds) {
         .build = [=](const ProceduralParameters& p) { return make_punch(p, side, false); },
         .phrases = {"{punch} with the [side] fist [times]", "{throw} [n] [side] punch[es]",
                     "{punch} forward [times] with the [side] hand"},
-        .actions = {"punch"},
+        .actions = {"punch", "fight"},
         .most = 4,
     };
   });
@@ -72,7 +72,7 @@ void add_arm_kinds(ProceduralKinds& kinds) {
       .phrases = {"{punch} with both fists in turn, [times] in all",
                   "{box} with alternating fists, [n] punch[es] in all",
                   "{throw} [n] punch[es], left and right in turn"},
-      .actions = {"punch"},
+      .actions = {"box", "punch", "fight"},
       .most = 6,
   });
   kinds.push_back({
@@ -89,7 +89,7 @@ void add_arm_kinds(ProceduralKinds& kinds) {
       .phrases = {"{stretch} both arms overhead",
                   "{stretch} the arms up and {lean} from side to side",
                   "{reach} up with both arms to stretch"},
-      .actions = {"stretch"},
+      .actions = {"stretch", "exercise"},
       .shortest = 4,
       .longest = 8,
   });
@@ -112,7 +112,7 @@ void add_body_kinds(ProceduralKinds& kinds) {
       .build = jump(0.34, 0),
       .phrases = {"{jump} high into the air [times]", "{jump} up high [times]",
                   "{make} [n] high jump[s] in place"},
-      .actions = {"jump"},
+      .actions = {"jump", "jump high"},
       .most = 2,
   });
   kinds.push_back({
@@ -120,7 +120,7 @@ void add_body_kinds(ProceduralKinds& kinds) {
       .build = jump(0.18, 0.9),
       .phrases = {"{jump} forward [times]", "{make} [n] jump[s] forward",
                   "{leap} forward [times] with both feet"},
-      .actions = {"jump"},
+      .actions = {"jump", "jump forward"},
       .most = 3,
   });
   kinds.push_back({
@@ -128,7 +128,7 @@ void add_body_kinds(ProceduralKinds& kinds) {
       .build = make_jumping_jacks,
       .phrases = {"{do} [n] jumping jack[s]", "{perform} [n] jumping jack[s]",
                   "{jump} with spread arms and legs, [n] jumping jack[s]"},
-      .actions = {"jump", "jumping jack"},
+      .actions = {"jumping jacks", "exercise", "jump"},
       .most = 6,
   });
   kinds.push_back({
@@ -136,7 +136,7 @@ void add_body_kinds(ProceduralKinds& kinds) {
       .build = make_squat,
       .phrases = {"{squat} [times]", "{do} [n] squat[s]",
                   "{squat} down and {come} back up [times]"},
-      .actions = {"squat"},
+      .actions = {"squat", "exercise"},
       .most = 3,
       .styles = true,
   });
@@ -149,7 +149,7 @@ void add_body_kinds(ProceduralKinds& kinds) {
           .phrases = {"{kick} " + where + " with the [side] leg [times]",
                       "{kick} the [side] foot " + where + " [times]",
                       "{make} [n] kick[s] " + where + " with the [side] foot"},
-          .actions = {"kick"},
+          .actions = {"kick", "fight", sideways ? "side kick" : "front kick"},
           .most = 3,
       };
     });
@@ -174,7 +174,7 @@ void add_body_kinds(ProceduralKinds& kinds) {
       .name = "sit-down",
       .build = [](const ProceduralParameters& p) { return make_sit(p, false); },
       .phrases = {"{sit} down", "{sit} down on a chair", "{take} a seat"},
-      .actions = {"sit"},
+      .actions = {"sit", "sit down"},
       .shortest = 3,
       .longest = 5,
       .styles = true,
@@ -184,7 +184,7 @@ void add_body_kinds(ProceduralKinds& kinds) {
       .build = [](const ProceduralParameters& p) { return make_sit(p, true); },
       .phrases = {"{sit} down and {stand} up again", "{sit} on a chair, then {stand} up",
                   "{take} a seat and {get} back up"},
-      .actions = {"sit", "stand up"},
+      .actions = {"sit", "sit down", "stand up"},
       .shortest = 5.2,
       .longest = 8,
       .styles = true,

@@ -9,6 +9,10 @@ std::function<Poses(const ProceduralParameters&)> gait(GaitKind kind,
   return [=](const ProceduralParameters& p) { return make_gait(p, kind, side); };
 }
 
+std::string turn_tag(ActionSide side) {
+  return side == ActionSide::left ? "turn left" : "turn right";
+}
+
 void add_walks(ProceduralKinds& kinds) {
   kinds.push_back({
       .name = "walk-forward",
@@ -25,7 +29,7 @@ void add_walks(ProceduralKinds& kinds) {
       .name = "walk-slow",
       .build = gait(GaitKind::walk),
       .phrases = {"slowly {walk} forward", "{walk} forward at a slow pace", "{walk} ahead slowly"},
-      .actions = {"walk"},
+      .actions = {"walk", "slow"},
       .low_speed = 0.5,
       .high_speed = 0.75,
       .shortest = 4,
@@ -35,7 +39,7 @@ void add_walks(ProceduralKinds& kinds) {
       .name = "walk-fast",
       .build = gait(GaitKind::walk),
       .phrases = {"{walk} forward quickly", "{walk} forward at a brisk pace", "{walk} fast"},
-      .actions = {"walk"},
+      .actions = {"walk", "fast"},
       .low_speed = 1.55,
       .high_speed = 1.85,
       .shortest = 3,
@@ -45,7 +49,7 @@ void add_walks(ProceduralKinds& kinds) {
       .name = "walk-backward",
       .build = gait(GaitKind::backward),
       .phrases = {"{walk} backward", "{walk} backwards", "{take} steps backward"},
-      .actions = {"walk"},
+      .actions = {"walk", "walk backward"},
       .low_speed = 0.5,
       .high_speed = 0.9,
       .shortest = 3,
@@ -58,7 +62,7 @@ void add_walks(ProceduralKinds& kinds) {
         .build = gait(GaitKind::sideways, side),
         .phrases = {"{walk} sideways to the [side]", "{sidestep} to the [side]",
                     "{step} sideways to the [side]"},
-        .actions = {"walk", "sidestep"},
+        .actions = {"walk", "walk sideways"},
         .low_speed = 0.3,
         .high_speed = 0.55,
         .shortest = 3,
@@ -71,7 +75,7 @@ void add_walks(ProceduralKinds& kinds) {
         .build = gait(GaitKind::circle, side),
         .phrases = {"{walk} in a circle to the [side]", "{walk} in a full circle, turning [side]",
                     "{walk} around in a circle towards the [side]"},
-        .actions = {"walk", "circle"},
+        .actions = {"walk", "circle", "turn", turn_tag(side)},
         .low_speed = 0.8,
         .high_speed = 1.25,
         .shortest = 6.5,
@@ -153,7 +157,7 @@ void add_walks(ProceduralKinds& kinds) {
       .build = gait(GaitKind::stop),
       .phrases = {"{walk} forward and {stop}", "{walk} forward, then {stand} still",
                   "{walk} ahead and {come} to a halt"},
-      .actions = {"walk", "stand"},
+      .actions = {"walk", "stop", "stand"},
       .low_speed = 0.9,
       .high_speed = 1.4,
       .shortest = 4.5,
@@ -166,7 +170,7 @@ void add_walks(ProceduralKinds& kinds) {
         .build = gait(GaitKind::turn_after, side),
         .phrases = {"{walk} forward and {turn} [side]", "{walk} ahead, then {turn} to the [side]",
                     "{walk} around a corner to the [side]"},
-        .actions = {"walk", "turn"},
+        .actions = {"walk", "turn", turn_tag(side)},
         .low_speed = 0.85,
         .high_speed = 1.25,
         .shortest = 5,
@@ -243,11 +247,13 @@ void add_turns_and_stands(ProceduralKinds& kinds) {
   for (const TurnWords& turn : turns) {
     add_sides(kinds, [&](ActionSide side) {
       const double degrees = turn.degrees;
+      std::vector<std::string> actions = {"turn", turn_tag(side)};
+      if (degrees == 180) actions.emplace_back("turn around");
       return ProceduralKind{
           .name = turn.name,
           .build = [=](const ProceduralParameters& p) { return make_turn(p, side, degrees); },
           .phrases = turn.phrases,
-          .actions = {"turn"},
+          .actions = actions,
           .styles = true,
       };
     });
@@ -256,7 +262,7 @@ void add_turns_and_stands(ProceduralKinds& kinds) {
       .name = "stand",
       .build = make_stand,
       .phrases = {"{stand} still", "{stand} in place", "{stand} and {wait}"},
-      .actions = {"stand"},
+      .actions = {"stand", "idle"},
       .shortest = 2.5,
       .longest = 8,
       .styles = true,

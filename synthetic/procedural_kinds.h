@@ -13,8 +13,9 @@ struct ProceduralKind {
   std::string name;
   std::string side = {};  ///< "left", "right" or empty
   std::function<Poses(const ProceduralParameters&)> build;
-  std::vector<std::string> phrases;      ///< for write_captions
-  std::vector<std::string> actions;      ///< labels
+  std::vector<std::string> phrases;  ///< for write_captions
+  std::vector<std::string>
+      actions;  ///< the words that captured data sets use, with what they imply
   double low_speed = 0, high_speed = 0;  ///< m/s; 0: no path speed
   double shortest = 0, longest = 0;      ///< seconds; 0: the duration follows from the count
   int most = 1;                          ///< repetitions

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 
+#include "db/attribution.h"
 #include "db/clip_filter.h"
 
 namespace remomask::tools {
@@ -37,6 +38,10 @@ nlohmann::json describe_database(const std::string& path) {
     captions += clip.captions.size();
     seconds += clip_seconds(clip);
   }
+  std::map<std::string, std::string> attributions;
+  for (const auto& [source, count] : sources) {
+    if (const auto text = db::attribution(database, source)) attributions[source] = *text;
+  }
   std::map<std::string, size_t> embedded;
   for (const std::string& retriever : database.retrievers()) {
     embedded[retriever] = database.embedded_clips(retriever).size();
@@ -51,6 +56,7 @@ nlohmann::json describe_database(const std::string& path) {
           {"splits", splits},
           {"sources", sources},
           {"licences", licences},
+          {"attributions", attributions},
           {"tags", tags},
           {"embedded", embedded}};
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/counted.h"
+#include "db/attribution.h"
 #include "db/storing_database.h"
 #include "db/transaction.h"
 #include "exchange/add_files.h"
@@ -194,12 +195,35 @@ void register_remove(CLI::App& group, Program& program) {
   });
 }
 
+void register_attribute(CLI::App& group, Program& program) {
+  struct Options {
+    std::string database, source, text;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = add_command(
+      group, "attribute", "store whom the licence of a data set asks to be named; db info shows it",
+      "remomask db attribute motions.sqlite lafan \"LaFAN1, (c) Ubisoft, CC BY-NC-ND 4.0\"");
+  command->add_option("database", options->database, "database file")->required();
+  command->add_option("source", options->source, "name of the data set")->required();
+  command->add_option("text", options->text, "replaces what is there; \"\" removes it")->required();
+  command->callback([options, &program] {
+    db::Database database(options->database, db::OpenMode::read_write);
+    db::set_attribution(database, options->source, options->text);
+    if (program.json) {
+      return program.print_json({{"source", options->source}, {"attribution", options->text}});
+    }
+    fmt::print("{}: attribution of {} {}\n", options->database, options->source,
+               options->text.empty() ? "removed" : "stored");
+  });
+}
+
 }  // namespace
 
 void register_db_change(CLI::App& group, Program& program) {
   register_add(group, program);
   register_tag(group, program);
   register_remove(group, program);
+  register_attribute(group, program);
 }
 
 }  // namespace remomask::tools

@@ -44,8 +44,11 @@ TEST(ClipFilter, LabelsTextListAndNested) {
   EXPECT_EQ(ids_with("measured.turn=-1"), (Ids{3}));
   EXPECT_EQ(ids_with("measured.turn=dotted"), (Ids{4}));
   EXPECT_EQ(ids_with("measured.far=true"), (Ids{2}));
-  EXPECT_EQ(ids_with("content=wal"), (Ids{}));
-  EXPECT_EQ(ids_with("content="), (Ids{}));
+  EXPECT_EQ(error_of([] { ids_with("content=walking"); }),
+            "no clip has the label content=walking; values that begin alike: walk");
+  EXPECT_NE(error_of([] { ids_with("content="); }).find("check how it is written"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { ids_with("measured.turn=3"); }), "");
 }
 
 TEST(ClipFilter, AllLabelConditionsMustHold) {

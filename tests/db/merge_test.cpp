@@ -1,5 +1,6 @@
 #include "db/merge.h"
 
+#include "db/attribution.h"
 #include "tests/db/db_test_tools.h"
 
 namespace remomask {
@@ -22,6 +23,24 @@ class MergeTest : public testing::Test {
   db::Database here_{folder_ / "here", db::OpenMode::create};
   db::Database there_{folder_ / "there", db::OpenMode::create};
 };
+
+TEST_F(MergeTest, AttributionsComeAlong) {
+  db::Clip ours = named_clip("ours"), shared = named_clip("shared"), other = named_clip("other");
+  ours.source = shared.source = "walks";
+  other.source = "runs";
+  add(here_, ours, 1);
+  add(there_, shared, 2);
+  const int64_t gone = add(there_, other, 3);
+  db::set_attribution(here_, "walks", "by A");
+  db::set_attribution(there_, "walks", "by B");
+  db::set_attribution(there_, "runs", "by C");
+  there_.remove({gone});
+  db::merge_database(here_, there_);
+  EXPECT_EQ(db::attribution(here_, "walks"), "by A\nby B");
+  EXPECT_EQ(db::attribution(here_, "runs"), std::nullopt);
+  db::add_attribution(here_, "walks", "by B");
+  EXPECT_EQ(db::attribution(here_, "walks"), "by A\nby B");
+}
 
 TEST_F(MergeTest, EverythingOfAClipComesAlong) {
   add(here_, named_clip("first"), 1);

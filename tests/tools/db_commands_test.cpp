@@ -8,9 +8,9 @@
 namespace remomask {
 namespace {
 
-const std::vector<std::string> kDbCommands = {"info",  "list",     "show",    "add",
-                                              "tag",   "remove",   "merge",   "export",
-                                              "check", "snapshot", "restore", "upgrade"};
+const std::vector<std::string> kDbCommands = {"info",    "list",    "show",     "add",   "tag",
+                                              "remove",  "merge",   "export",   "check", "snapshot",
+                                              "restore", "upgrade", "attribute"};
 
 class DbCommandsTest : public testing::Test {
  protected:
@@ -100,6 +100,44 @@ TEST_F(DbCommandsTest, TagsAndFiltersChooseClips) {
   }
 }
 
+TEST_F(DbCommandsTest, AttributionsAreShownByInfo) {
+  EXPECT_EQ(run_json({"db", "info", database_})["attributions"], nlohmann::json::object());
+  run_json({"db", "attribute", database_, "procedural", "made by\nformula"});
+  EXPECT_EQ(run_json({"db", "info", database_})["attributions"],
+            (nlohmann::json{{"procedural", "made by\nformula"}}));
+  const std::string shown = run_program({"db", "info", database_}).output;
+  EXPECT_NE(shown.find("made by"), std::string::npos) << shown;
+  const ProgramResult wrong = run_program({"db", "attribute", database_, "nobody", "x"});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_NE(wrong.errors.find("data set 'nobody'"), std::string::npos) << wrong.errors;
+  EXPECT_EQ(run_program({"db", "attribute", database_, "procedural", "\xff"}).exit_code, 1);
+  run_json({"db", "attribute", database_, "procedural", ""});
+  EXPECT_EQ(run_json({"db", "info", database_})["attributions"], nlohmann::json::object());
+}
+
+TEST_F(DbCommandsTest, ActionsOfMadeMotionsAreInTheVocabularyOfThePacks) {
+  const std::string all = scratch_.path("all.sqlite");
+  run_json({"procedural", "--db", all, "--count", "59"});
+  const auto found = [&](std::vector<std::string> conditions) {
+    std::vector<std::string> arguments = {"db", "list", all};
+    for (const std::string& condition : conditions) {
+      arguments.insert(arguments.end(), {"--label", condition});
+    }
+    return run_json(arguments)["clips"].size();
+  };
+  EXPECT_EQ(found({"actions=punch"}), 3u);
+  EXPECT_EQ(found({"actions=fight", "actions=front kick"}), 2u);
+  EXPECT_EQ(found({"actions=jumping jacks"}), 1u);
+  EXPECT_EQ(found({"actions=turn left", "actions=turn around"}), 1u);
+  EXPECT_EQ(found({"actions=raise hand"}), 3u);
+  const ProgramResult wrong = run_program({"db", "list", all, "--label", "actions=jumpin jacks"});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_NE(
+      wrong.errors.find("values that begin alike: jump, jump forward, jump high, jumping jacks"),
+      std::string::npos)
+      << wrong.errors;
+}
+
 TEST_F(DbCommandsTest, DigitsAreNamesAndNumbersHaveASign) {
   const std::string number = std::to_string(int(clips_[1]["id"]));
   const ProgramResult refused = run_program({"db", "remove", database_, number});
@@ -138,6 +176,36 @@ TEST_F(DbCommandsTest, DryRunShowsWhatRemoveWouldTake) {
   EXPECT_EQ(json["would_remove"], nlohmann::json{name(0)});
   EXPECT_EQ(json["clips_left"], 11);
   EXPECT_EQ(count({}), 12u);
+}
+
+TEST_F(DbCommandsTest, SeveralFoldersAreImportedAtOnce) {
+  const std::string one = scratch_.path("one"), two = scratch_.path("two");
+  const std::string all = scratch_.path("all.sqlite");
+  run_json({"db", "export", database_, one, name(0), name(1)});
+  run_json({"db", "export", database_, two, name(2)});
+  std::ofstream(two + "/broken.bvh") << "HIERARCHY\nROOT";
+  // What is wrong with one of them is said before anything is stored.
+  for (const auto& [arguments, what] :
+       std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{one, scratch_.path("nowhere")}, "nowhere: there is no such folder"},
+           {{one, one + "/."}, "a data set 'one' is named before it"},
+           {{one, two, "--source", "s"}, "--source is about one folder"},
+           {{one, two, "--captions", one + "/captions.jsonl"}, "--captions is about one folder"}}) {
+    std::vector<std::string> command = {"import", "--db", all};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const ProgramResult refused = run_program(command);
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.errors.find(what), std::string::npos) << refused.errors;
+    EXPECT_FALSE(std::filesystem::exists(all));
+  }
+  const auto report = run_json({"import", one, two, "--db", all});
+  EXPECT_EQ(report["files_stored"], 3);
+  ASSERT_EQ(report["rejected"].size(), 1u);
+  EXPECT_EQ(report["rejected"][0]["folder"], two);
+  EXPECT_EQ(run_json({"db", "info", all})["sources"], (nlohmann::json{{"one", 2}, {"two", 1}}));
+  const std::string again = run_program({"import", one, two, "--db", all}).output;
+  EXPECT_NE(again.find(one + ":\n0 of 2 files stored now, 2 stored before"), std::string::npos)
+      << again;
 }
 
 TEST_F(DbCommandsTest, ANameOfDigitsIsThatClip) {
