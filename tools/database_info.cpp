@@ -16,9 +16,16 @@ namespace {
 /// More digits than these say nothing about a clip of 20 frames a second.
 double rounded(double value, double digits) { return std::round(value * digits) / digits; }
 
+/// Further lines of a text, such as a licence, stand below its first one.
 std::string readable(const nlohmann::json& value) {
   if (value.is_number_float()) return fmt::format("{:g}", value.get<double>());
-  return value.is_string() ? value.get<std::string>() : value.dump();
+  if (!value.is_string()) return value.dump();
+  std::string text;
+  for (const char c : value.get_ref<const std::string&>()) {
+    text += c;
+    if (c == '\n') text.append(15, ' ');
+  }
+  return text;
 }
 
 }  // namespace
