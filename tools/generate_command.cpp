@@ -34,7 +34,7 @@ void register_generate(CLI::App& app, Program& program) {
   auto options = std::make_shared<GenerateCommand>();
   CLI::App* command =
       add_command(app, "generate", "a sentence in, a motion file out, with its evidence",
-                  "remomask generate \"a person walks forward and waves\" -o motion.bvh");
+                  "remomask generate \"someone does jumping jacks\" -o motion.bvh");
   const CLI::Option* prompt =
       command->add_option("prompt", options->prompt, "what the person does");
   command->add_option("--script", options->script,
