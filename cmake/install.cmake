@@ -41,6 +41,7 @@ install(FILES
     models/base.safetensors models/evaluator.safetensors models/procedural.sqlite
     models/procedural.sqlite.index models/README.md rig/skeleton_maps.json
   DESTINATION ${data})
+install(DIRECTORY models/attributions DESTINATION ${data})
 
 # Pages and completion, from the help texts of the program that was just built.
 set(pages ${PROJECT_BINARY_DIR}/pages)
