@@ -15,8 +15,10 @@ namespace remomask::search {
 SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
                           const index::LinearQuery& vectors);
 
-/// The same of a sentence, from the ranking of the clips.
+/// The same of a sentence, from the ranking of the clips; `uncovered` of the sentence goes into the
+/// probabilities.
 SearchAnswer collect_ranked(const SearchScene& scene, const SearchQuery& query,
-                            const std::vector<RankedClip>& ranked);
+                            const std::vector<RankedClip>& ranked, const WordScore& score,
+                            double uncovered);
 
 }  // namespace remomask::search

@@ -93,7 +93,7 @@ class VariantRanking {
     }
     result.parts.words = features.words;
     result.parts.motion = features.motion;
-    result.probability = score_.probability(features);
+    result.features = features;
     result.score = by == SearchBy::captions ? features.best
                    : by == SearchBy::words  ? features.words
                                             : score_.logit(features);

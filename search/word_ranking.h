@@ -24,7 +24,7 @@ struct RankedClip {
   int64_t clip_id = 0;
   bool as_mirrored = false;
   double score = 0;  ///< what the ranking is by: log-odds, cosine or share of the best BM25
-  double probability = 0;
+  WordFeatures features;
   WordParts parts;
 };
 

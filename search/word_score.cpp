@@ -72,7 +72,7 @@ double WordScore::logit(const WordFeatures& features) const {
   const double cosine = features.motion.value_or(0);
   if (!features.captions) return motion_only_bias + motion_only * cosine;
   return bias + best * features.best + mean * features.mean + words * features.words +
-         (features.other_side ? other_side : 0) + motion * cosine;
+         (features.other_side ? other_side : 0) + motion * cosine + uncovered * features.uncovered;
 }
 
 double WordScore::probability(const WordFeatures& features) const {
@@ -85,12 +85,12 @@ WordScore fit_word_score(const std::vector<JudgedFeatures>& pairs, double ridge)
   if (pairs.size() < kMinPairs || right == 0 || right == pairs.size()) {
     throw Error("a score is fitted to at least 20 hits, some of them right and some wrong");
   }
-  Regression worded(pairs.size(), 5), moving(pairs.size(), 2);
+  Regression worded(pairs.size(), 6), moving(pairs.size(), 2);
   for (size_t i = 0; i < pairs.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const WordFeatures& one = pairs[i].features;
     const double cosine = one.motion.value_or(0);
-    worded.rows.row(row) << 1, one.best, one.mean, one.words, cosine;
+    worded.rows.row(row) << 1, one.best, one.mean, one.words, cosine, -one.uncovered;
     moving.rows.row(row) << 1, cosine;
     if (one.other_side) worded.offset(row) = kOtherSide;
     worded.right(row) = moving.right(row) = pairs[i].right ? 1 : 0;
@@ -106,6 +106,7 @@ WordScore fit_word_score(const std::vector<JudgedFeatures>& pairs, double ridge)
   score.mean = with(2);
   score.words = with(3);
   score.motion = with(4);
+  score.uncovered = -with(5);
   score.other_side = kOtherSide;
   score.motion_only_bias = without(0);
   score.motion_only = without(1);

@@ -12,6 +12,7 @@ struct WordFeatures {
   double best = 0;               ///< highest cosine of the sentence and a caption
   double mean = 0;               ///< mean cosine over the captions
   double words = 0;              ///< BM25 of the best caption, divided by the highest of all clips
+  double uncovered = 0;          ///< of the sentence: mean over its content words of 1 - covered
   bool other_side = false;       ///< the sentence says left, the caption right, or the reverse
   std::optional<double> motion;  ///< cosine of sentence and motion; none: not embedded
 };
@@ -19,7 +20,7 @@ struct WordFeatures {
 /// The probability that a clip shows what a sentence asks for: a logistic regression on the
 /// features, one for clips with captions and one for those without.
 struct WordScore {
-  double bias = 0, best = 0, mean = 0, words = 0, other_side = 0, motion = 0;
+  double bias = 0, best = 0, mean = 0, words = 0, other_side = 0, motion = 0, uncovered = 0;
   double motion_only_bias = 0, motion_only = 0;
 
   /// The log-odds. A motion that is not embedded counts as one of cosine 0.
@@ -27,7 +28,7 @@ struct WordScore {
   double probability(const WordFeatures& features) const;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WordScore, bias, best, mean, words, other_side, motion,
-                                   motion_only_bias, motion_only)
+                                   uncovered, motion_only_bias, motion_only)
 
 /// A hit whose rightness is known.
 struct JudgedFeatures {
@@ -38,9 +39,9 @@ struct JudgedFeatures {
 
 /// Maximum likelihood with a penalty of `ridge` / 2 per squared weight (Newton's method), both
 /// regressions from the same pairs. Weights of best, mean, words and motion are kept from falling
-/// below 0: a clip must not become less probable by resembling the sentence more. That of
-/// other_side is -6 unless the pairs say more. Throws Error for fewer than 20 pairs or pairs that
-/// are all right or all wrong.
+/// below 0, that of uncovered from rising above it: a clip must not become less probable by
+/// resembling the sentence more. That of other_side is -6. Throws Error for fewer than 20 pairs or
+/// pairs that are all right or all wrong.
 WordScore fit_word_score(const std::vector<JudgedFeatures>& pairs, double ridge = 1e-2);
 
 }  // namespace remomask::search

@@ -132,11 +132,11 @@ SearchAnswer MotionSearch::Impl::search_words(const SearchQuery& query) const {
   refresh();
   const SearchScene scene = word_scene(query, sentence);
   const WordedQuery worded = worded_query(query, sentence);
-  const std::vector<RankedClip> ranked =
-      rank_clips(scene, worded.variants, words->score.value_or(WordScore()), query.by);
-  SearchAnswer answer = collect_ranked(scene, query, ranked);
-  answer.unsearched += scene.caption_table->without_vector();
-  answer.words = coverage(worded, scene, ranked);
+  const WordScore score = words->score.value_or(WordScore());
+  const std::vector<RankedClip> ranked = rank_clips(scene, worded.variants, score, query.by);
+  const std::vector<QueryWord> covered = coverage(worded, scene, ranked);
+  SearchAnswer answer = collect_ranked(scene, query, ranked, score, uncovered_share(covered));
+  answer.words = covered;
   answer.corrected = worded.sentence.corrected;
   if (!answer.corrected.empty()) answer.sentence = worded.sentence.text;
   return answer;
