@@ -1,5 +1,7 @@
 #include "exchange/export.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -8,6 +10,7 @@
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/leftovers.h"
+#include "formats/animation_formats.h"
 #include "remomask/error.h"
 
 namespace remomask::exchange {
@@ -17,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPlanFile = "export.json";
+constexpr size_t kMostTogether = 1000;
 
 /// A file name for every clip: its name without signs that mean something to a
 /// file system, with a number where two become the same.
@@ -77,6 +81,10 @@ nlohmann::json export_plan(const db::Database& database, const std::vector<int64
           {"loop", writing.loop},
           {"own_proportions", writing.own_proportions},
           {"common_skeleton", writing.common_skeleton},
+          {"npz", static_cast<int>(writing.npz)},
+          {"features", writing.features},
+          {"character", writing.character},
+          {"character_map", writing.character_map},
           {"root_motion", writing.root_motion}};
 }
 
@@ -143,6 +151,43 @@ void export_clips(const db::Database& database, const std::vector<int64_t>& ids,
   }
   write_file_atomically(captions_path, captions);
   fs::remove(fs::path(folder) / kPlanFile);
+}
+
+void export_together(const db::Database& database, const std::vector<int64_t>& ids,
+                     const std::string& path, const MotionWriteOptions& writing,
+                     const Monitor& monitor) {
+  formats::require_room_for_several(path);
+  if (!writing.character.empty()) {
+    throw Error(
+        "several motions cannot be put onto a character in one file; leave out one of them");
+  }
+  if (ids.size() > kMostTogether) {
+    throw Error(
+        fmt::format("{} clips are too many for one file, which holds up to {}; choose "
+                    "fewer, or export a folder",
+                    ids.size(), kMostTogether));
+  }
+  const db::ReadSnapshot snapshot(database);
+  std::vector<Motion> motions;
+  std::vector<nlohmann::json> about;
+  std::vector<std::string> names;
+  for (const int64_t id : ids) {
+    if (monitor.stop_requested()) throw Interrupted("the export was stopped; nothing was written");
+    const db::Clip clip = database.clip(id);
+    motions.push_back(database.motion(id));
+    names.push_back(clip.name);
+    about.push_back({{"clip", clip.name},
+                     {"captions", clip.captions},
+                     {"licence", clip.licence},
+                     {"source", clip.source}});
+    monitor.report({"export " + database.path(), static_cast<double>(motions.size()),
+                    static_cast<double>(ids.size()), ""});
+  }
+  std::vector<formats::WritingJob> jobs;
+  for (size_t i = 0; i < motions.size(); ++i) {
+    jobs.push_back({motions[i], writing, &about[i], names[i]});
+  }
+  formats::write_together(path, jobs);
 }
 
 }  // namespace remomask::exchange

@@ -28,4 +28,12 @@ void export_clips(const db::Database& database, const std::vector<int64_t>& ids,
                   const std::string& folder, const ExportOptions& options,
                   const Monitor& monitor = {});
 
+/// Writes these clips as the animations of one .glb or .fbx file, named as the clips are. In a .glb
+/// every animation holds captions, licence and source of its clip. Throws Error for another kind of
+/// file, for no clip, for more than a viewer would list, and for a character; Interrupted when
+/// stopped, without a file.
+void export_together(const db::Database& database, const std::vector<int64_t>& ids,
+                     const std::string& path, const MotionWriteOptions& writing,
+                     const Monitor& monitor = {});
+
 }  // namespace remomask::exchange

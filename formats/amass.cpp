@@ -22,7 +22,11 @@ constexpr double kMaxAmassFps = 100'000;
 using Names = std::vector<std::string>;
 
 const Names kPositionNames = {"joints", "positions", "posed_joints", "joint_positions", "arr_0"};
-const Names kPoseNames = {"poses", "smpl_poses"};
+/// Names that mean positions where a file holds none of the others.
+const Names kLoosePositionNames = {"joints3d",    "joints_3d",    "j3d",       "jtr",
+                                   "keypoints3d", "keypoints_3d", "keypoints", "global_positions",
+                                   "motion",      "xyz"};
+const Names kPoseNames = {"poses", "smpl_poses", "pose", "thetas"};
 const Names kRootNames = {"root_orient", "global_orient"};
 const Names kBodyNames = {"pose_body", "body_pose"};
 const Names kTransNames = {"trans", "transl", "smpl_trans"};
@@ -43,17 +47,35 @@ bool is_pose_width(size_t width) {
   return width == 66 || width == 72 || width == 156 || width == 165;
 }
 
-/// An array as rows of frames.
+/// An array as rows of frames. A batch of one is its only motion.
 struct PoseRows {
   const NpyArray* array = nullptr;
   size_t frames = 0, width = 0;
+  bool matrices = false;  ///< nine numbers a joint instead of three
 
   explicit PoseRows(const NpyArray* rows) : array(rows) {
     if (!rows || rows->shape.empty()) return;
-    frames = rows->shape[0];
+    const std::vector<size_t>& shape = rows->shape;
+    frames = shape[shape.size() > 2 && shape[0] == 1 ? 1 : 0];
     width = frames == 0 ? 0 : rows->values.size() / frames;
+    const size_t axes = shape.size();
+    matrices = axes >= 3 && shape[axes - 1] == 3 && shape[axes - 2] == 3;
   }
   const float* row(size_t frame) const { return array->values.data() + frame * width; }
+  /// Numbers of a row as axis and angle.
+  size_t turn_width() const { return matrices ? width / 3 : width; }
+  Quat turn(size_t frame, size_t joint) const {
+    const float* p = row(frame) + (matrices ? 9 : 3) * joint;
+    if (!matrices) {
+      const Vec3 axis(p[0], p[1], p[2]);
+      const double angle = axis.norm();
+      if (std::isfinite(angle) && angle < 1e-12) return Quat::Identity();
+      return Quat(Eigen::AngleAxisd(angle, axis / angle));
+    }
+    Eigen::Matrix3d matrix;
+    matrix << p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8];
+    return Quat(matrix).normalized();
+  }
 };
 
 /// Reads the arrays of one file into a SourceMotion.
@@ -94,7 +116,7 @@ class AmassReader {
     // Where both are there, as in the SMPL-X files of AMASS, they say the same.
     if (root_.array && body_.array) {
       poses_ = PoseRows(nullptr);
-      if (root_.width != 3 || body_.width < 63 || root_.frames != body_.frames) {
+      if (root_.turn_width() != 3 || body_.turn_width() < 63 || root_.frames != body_.frames) {
         fail(
             fmt::format("root_orient has {} x {} numbers and pose_body {} x {}; T x 3 and T x 63 "
                         "are needed",
@@ -102,10 +124,10 @@ class AmassReader {
       }
       frames_ = root_.frames;
     } else if (poses_.array) {
-      if (!is_pose_width(poses_.width)) {
+      if (!is_pose_width(poses_.turn_width())) {
         fail(
-            fmt::format("poses has shape ({}); T rows of 66, 72, 156 or 165 axis-angle numbers "
-                        "are needed",
+            fmt::format("poses has shape ({}); T rows of 66, 72, 156 or 165 axis-angle numbers, "
+                        "or of as many rotation matrices, are needed",
                         fmt::join(poses_.array->shape, ", ")));
       }
       frames_ = poses_.frames;
@@ -164,14 +186,10 @@ class AmassReader {
   }
 
   void append_rotation(size_t frame, size_t joint) {
-    const float* p = poses_.array ? poses_.row(frame) + 3 * joint
-                     : joint == 0 ? root_.row(frame)
-                                  : body_.row(frame) + 3 * (joint - 1);
-    const Vec3 turn(p[0], p[1], p[2]);
-    const double angle = turn.norm();
-    if (!std::isfinite(angle)) fail_at(frame, "the pose");
-    const Quat rotation =
-        angle < 1e-12 ? Quat::Identity() : Quat(Eigen::AngleAxisd(angle, turn / angle));
+    const Quat rotation = poses_.array ? poses_.turn(frame, joint)
+                          : joint == 0 ? root_.turn(frame, 0)
+                                       : body_.turn(frame, joint - 1);
+    if (!rotation.coeffs().allFinite()) fail_at(frame, "the pose");
     for (const double value : {rotation.x(), rotation.y(), rotation.z(), rotation.w()}) {
       result_.source.rotations.push_back(static_cast<float>(value));
     }
@@ -229,6 +247,12 @@ RawMotion read_npz_motion(const std::string& path) {
   const NpzArrays npz = read_npz(path, all_npz_names());
   if (const NpyArray* positions = npz.find_any(kPositionNames)) {
     return joints_of_npz(*positions, npz, path);
+  }
+  if (!npz.find_any(kPoseNames) && !npz.find_any(kBodyNames)) {
+    const NpzArrays loose = read_npz(path, kLoosePositionNames);
+    if (const NpyArray* positions = loose.find_any(kLoosePositionNames)) {
+      return joints_of_npz(*positions, npz, path);
+    }
   }
   AmassMotion amass = AmassReader(npz, path).read();
   RawMotion raw;

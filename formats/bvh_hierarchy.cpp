@@ -31,6 +31,7 @@ std::string unused_name(const std::string& name, std::unordered_set<std::string>
 }  // namespace
 
 void BvhHierarchy::parse() {
+  if (!scanner_.skip_blank_lines()) scanner_.fail("the file is empty; export it again");
   if (!same_word(scanner_.next_word(), "HIERARCHY")) {
     scanner_.fail("a BVH file starts with HIERARCHY; this is another format");
   }

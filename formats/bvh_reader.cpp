@@ -39,9 +39,8 @@ class BvhMotionParser {
       const BvhScanner::Place before = scanner_.place();
       const std::string label = scanner_.header_label();
       if (label == "frames") {
-        announced_ = scanner_.next_word();
         announced_line_ = scanner_.line();
-        if (announced_.empty()) scanner_.fail("the file ends behind Frames:; it is truncated");
+        announced_ = scanner_.at_line_end() ? "nothing" : scanner_.next_word();
       } else if (label == "frametime") {
         read_frame_time();
         frame_time_seen = true;
@@ -61,8 +60,8 @@ class BvhMotionParser {
   }
 
   void read_frame_time() {
-    const std::string_view word = scanner_.next_word();
-    if (word.empty()) scanner_.fail("the file ends behind Frame Time:; it is truncated");
+    const std::string_view word =
+        scanner_.at_line_end() ? std::string_view("nothing") : scanner_.next_word();
     double value = 0;
     const char* end = word.data() + word.size();
     const bool plausible = parse_number(word.data(), end, value) == end && value >= kMinFrameTime &&
@@ -72,8 +71,8 @@ class BvhMotionParser {
     } else if (!reading_.frame_time_known) {
       scanner_.fail(
           fmt::format("Frame Time: {} is not a time between frames in seconds (30 frames a second "
-                      "are 0.033333); correct it, or give the frame rate with --fps",
-                      shown_text(word)));
+                      "are 0.033333){}; correct it, or give the frame rate with --fps",
+                      shown_text(word), about_decimal_comma(word)));
     }
   }
 
@@ -125,8 +124,9 @@ class BvhMotionParser {
       if (!next || (next < end && !is_bvh_blank(*next) && !is_line_end(*next))) {
         const char* last = p;
         while (last < end && !is_bvh_blank(*last) && !is_line_end(*last)) ++last;
-        scanner_.fail(fmt::format("value {} of the frame is {}, not a finite number", i + 1,
-                                  in_quotes({p, static_cast<size_t>(last - p)})));
+        const std::string_view word(p, static_cast<size_t>(last - p));
+        scanner_.fail(fmt::format("value {} of the frame is {}, not a finite number{}", i + 1,
+                                  in_quotes(word), about_decimal_comma(word)));
       }
       if (!(std::abs(value) <= kMaxBvhValue)) {
         scanner_.fail(fmt::format("value {} of the frame is too large to be a motion", i + 1));
@@ -163,7 +163,16 @@ class BvhMotionParser {
   long announced_line_ = 0;
 };
 
-Bvh parse_utf8_bvh(std::string_view text, const std::string& path, const BvhReading& reading) {
+/// The end of a file as old tools leave it: zeros that fill a block, and the sign that ended files
+/// of DOS.
+std::string_view without_padding(std::string_view text) {
+  constexpr char kEndOfDosFile = 0x1a;
+  while (!text.empty() && (text.back() == 0 || text.back() == kEndOfDosFile)) text.remove_suffix(1);
+  return text;
+}
+
+Bvh parse_utf8_bvh(std::string_view file, const std::string& path, const BvhReading& reading) {
+  const std::string_view text = without_padding(file);
   Bvh bvh;
   BvhScanner scanner(text, path, bvh.warnings);
   BvhHierarchy hierarchy(scanner, reading.root);

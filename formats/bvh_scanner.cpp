@@ -43,6 +43,12 @@ std::string shown_text(std::string_view text) {
 
 std::string in_quotes(std::string_view text) { return '"' + shown_text(text) + '"'; }
 
+std::string about_decimal_comma(std::string_view word) {
+  const size_t comma = word.find(',');
+  if (comma == std::string_view::npos || comma + 1 == word.size()) return "";
+  return "; numbers have a decimal point, not a decimal comma";
+}
+
 void BvhScanner::fail(const std::string& message) const { throw FileError(path_, line_, message); }
 
 void BvhScanner::warn(long line, const std::string& message) {
@@ -96,7 +102,8 @@ double BvhScanner::read_number(const char* what) {
   double value = 0;
   if (word.empty()) fail(fmt::format("the file ends inside {}; it is truncated", what));
   if (parse_number(word.data(), word.data() + word.size(), value) != word.data() + word.size()) {
-    fail(fmt::format("{} needs a number, found {}", what, in_quotes(word)));
+    fail(fmt::format("{} needs a number, found {}{}", what, in_quotes(word),
+                     about_decimal_comma(word)));
   }
   if (!(std::abs(value) <= kMaxBvhValue)) {
     fail(fmt::format("{} holds {}, which is not a plausible size", what, shown_text(word)));

@@ -26,6 +26,11 @@ class BvhScanner {
   std::string_view rest_of_line();
   /// Letters of the line up to a colon (which is passed) or a number, in lower case: "frametime".
   std::string header_label();
+  /// Whether only blanks follow in this line.
+  bool at_line_end() {
+    while (p_ < end_ && is_bvh_blank(*p_)) ++p_;
+    return p_ == end_ || is_line_end(*p_);
+  }
   /// The next word must be `wanted`, in any case.
   void expect(std::string_view wanted, std::string_view where);
   double read_number(const char* what);
@@ -74,5 +79,7 @@ bool same_word(std::string_view a, std::string_view b);
 /// Text of a file as a message may show it: short, without control characters or broken UTF-8.
 std::string shown_text(std::string_view text);
 std::string in_quotes(std::string_view text);
+/// What an error about a number says if the number has a decimal comma; else empty.
+std::string about_decimal_comma(std::string_view word);
 
 }  // namespace remomask::formats

@@ -31,13 +31,26 @@ bool is_smpl_count(size_t joints) {
   return joints == 22 || joints == 24 || joints == 52 || joints == 55;
 }
 
+/// The same, and those that the models of these bodies put out, with points of face, hands and feet
+/// behind the joints.
+bool is_body_count(size_t joints) {
+  return is_smpl_count(joints) || joints == 45 || joints == 73 || joints == 127 || joints == 144;
+}
+
 std::optional<JointLayout> layout_of(const Shape& shape) {
   const size_t axes = shape.size();
-  if (axes == 3 && shape[2] == 3 && is_smpl_count(shape[1])) {
+  if (axes == 3 && shape[2] == 3 && is_body_count(shape[1])) {
     return JointLayout{shape[0], shape[1], shape[1] * 3, 3, 1, false};
   }
-  if (axes == 3 && shape[1] == 3 && is_smpl_count(shape[0])) {
+  if (axes == 3 && shape[1] == 3 && is_body_count(shape[0])) {
     return JointLayout{shape[2], shape[0], 1, 3 * shape[2], shape[2], false};
+  }
+  // Joints or axes before frames, as transposed arrays have them.
+  if (axes == 3 && shape[2] == 3 && is_body_count(shape[0])) {
+    return JointLayout{shape[1], shape[0], 3, 3 * shape[1], 1, false};
+  }
+  if (axes == 3 && shape[1] == 3 && is_body_count(shape[2])) {
+    return JointLayout{shape[0], shape[2], 3 * shape[2], 1, shape[2], false};
   }
   if (axes == 2 && shape[1] % 3 == 0 && is_smpl_count(shape[1] / 3)) {
     return JointLayout{shape[0], shape[1] / 3, shape[1], 3, 1, true};
@@ -71,8 +84,8 @@ bool is_features(const Shape& shape) {
       name, 0,
       shown +
           "; accepted are joint positions (T, 22, 3), (T, 66), (1, T, 22, 3), (22, 3, T) and "
-          "(1, 22, 3, T), the same with the 24, 52 or 55 joints of SMPL, SMPL-H and SMPL-X, "
-          "and features (T, 263)");
+          "(1, 22, 3, T), the same with the 24, 52 or 55 joints of SMPL, SMPL-H and SMPL-X or the "
+          "45, 73, 127 or 144 points of these models, and features (T, 263)");
 }
 
 void require_finite_joints(const Motion& motion, const std::string& name) {
@@ -126,6 +139,18 @@ Motion copy_joints(const NpyArray& array, const JointLayout& layout) {
   return motion;
 }
 
+/// Features as MDM stores them, with frames last, frames first.
+NpyArray transposed(const NpyArray& array) {
+  const size_t rows = array.shape[1], columns = array.shape[0];
+  NpyArray result{{rows, columns}, std::vector<float>(array.values.size())};
+  for (size_t i = 0; i < rows; ++i) {
+    for (size_t j = 0; j < columns; ++j) {
+      result.values[i * columns + j] = array.values[j * rows + i];
+    }
+  }
+  return result;
+}
+
 Motion motion_of_features(NpyArray array, const std::string& name) {
   const Skeleton& skeleton = humanml_skeleton();
   check_frame_count(array.shape[0], name);
@@ -139,13 +164,18 @@ Motion motion_of_features(NpyArray array, const std::string& name) {
 Motion motion_of_array(NpyArray array, const std::string& name,
                        std::vector<std::string>& warnings) {
   const Shape original = array.shape;
-  // A batch of one is the motion itself.
-  while (array.shape.size() > 2 && array.shape[0] == 1 && !layout_of(array.shape)) {
-    array.shape.erase(array.shape.begin());
+  // A batch of one is the motion itself, wherever its axis stands.
+  for (auto one = array.shape.begin(); one != array.shape.end() && array.shape.size() > 2;) {
+    if (layout_of(array.shape)) break;
+    one = *one == 1 ? array.shape.erase(one) : one + 1;
   }
   if (std::find(original.begin(), original.end(), size_t{0}) != original.end()) {
     throw FileError(name, 0,
                     fmt::format("has shape ({}): there are no frames", fmt::join(original, ", ")));
+  }
+  if (array.shape.size() == 2 && is_features({array.shape[1], array.shape[0]}) &&
+      original.size() > 2) {
+    array = transposed(array);
   }
   if (is_features(array.shape)) return motion_of_features(std::move(array), name);
   const std::optional<JointLayout> layout = layout_of(array.shape);

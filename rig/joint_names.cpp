@@ -55,14 +55,11 @@ const NamePreset& name_preset(JointNames names) {
 }
 
 const NamePreset* find_name_preset(const std::vector<std::string>& names) {
-  if (names.size() != kRigJoints + 1) return nullptr;
   const auto has = [&](std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   for (const NamePreset& preset : name_presets()) {
-    if (has(preset.root) && std::all_of(preset.joints.begin(), preset.joints.end(), has)) {
-      return &preset;
-    }
+    if (std::all_of(preset.joints.begin(), preset.joints.end(), has)) return &preset;
   }
   return nullptr;
 }

@@ -23,7 +23,7 @@ struct NamePreset {
 const std::vector<NamePreset>& name_presets();
 const NamePreset& name_preset(JointNames names);
 
-/// The preset whose 23 names are exactly these, in any order: a file that was written here.
+/// The preset whose 22 joints are all among these names; null if there is none.
 const NamePreset* find_name_preset(const std::vector<std::string>& names);
 
 }  // namespace remomask::rig

@@ -86,6 +86,11 @@ std::vector<std::string> take_apart(const std::string& word) {
   for (size_t end = size; end > 0; end = from[end]) {
     parts.insert(parts.begin(), word.substr(from[end], end - from[end]));
   }
+  // "rl" is no joint on both sides.
+  const bool sides = std::all_of(parts.begin(), parts.end(), [](const std::string& part) {
+    return look_up_word(part).kind == WordKind::side;
+  });
+  if (sides) return {word};
   return parts;
 }
 

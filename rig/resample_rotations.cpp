@@ -5,18 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinematics/pose_fit.h"
-#include "motion/rotation.h"
 #include "remomask/error.h"
 #include "remomask/skeleton.h"
 #include "rig/forward_kinematics.h"
+#include "rig/leg_pose.h"
 
 namespace remomask::rig {
 
 namespace {
 
 constexpr double kLowestFps = 1, kHighestFps = 240;
-constexpr double kStandingSpeed = 0.5;  // m/s
 
 class Resampler {
  public:
@@ -74,31 +72,7 @@ class Resampler {
     const size_t held = toe_way <= ankle_way ? toe : ankle;
     Vec3 target = (1 - share) * here_.positions[held] + share * next_.positions[held];
     if (held == toe) target -= foot * to_vec(source_.rest_offsets[toe]);
-    bend_leg(ankle, foot, target);
-  }
-
-  /// Puts the ankle of the last frame to `target`, its foot turned to `foot`.
-  void bend_leg(size_t ankle, const Quat& foot, Vec3 target) {
-    const auto knee = static_cast<size_t>(source_.parents[ankle]);
-    const auto hip = static_cast<size_t>(source_.parents[knee]);
-    const auto pelvis = static_cast<size_t>(source_.parents[hip]);
-    const auto frame = static_cast<int>(result_.root.size()) - 1;
-    const WorldPose now = world_pose(result_, frame);
-    const double upper = to_vec(source_.rest_offsets[knee]).norm();
-    const double lower = to_vec(source_.rest_offsets[ankle]).norm();
-    const Vec3 bent =
-        kinematics::bend_joint(now.positions[hip], target, now.positions[knee], upper, lower);
-    const Quat thigh =
-        motion::shortest_arc(now.positions[knee] - now.positions[hip], bent - now.positions[hip]) *
-        now.rotations[hip];
-    const Quat shin =
-        motion::shortest_arc(now.positions[ankle] - now.positions[knee], target - bent) *
-        now.rotations[knee];
-    const auto first = result_.rotations.size() - source_.parents.size();
-    result_.rotations[first + hip] =
-        from_quat((now.rotations[pelvis].conjugate() * thigh).normalized());
-    result_.rotations[first + knee] = from_quat((thigh.conjugate() * shin).normalized());
-    result_.rotations[first + ankle] = from_quat((shin.conjugate() * foot).normalized());
+    put_foot(result_, static_cast<int>(result_.root.size()) - 1, ankle, foot, target);
   }
 
   const JointRotations& source_;

@@ -8,14 +8,6 @@
 
 namespace remomask::rig {
 
-namespace {
-
-constexpr double kLongestSpread = 1;               // s
-constexpr double kTravelled = 0.3, kTurned = 0.5;  // m, rad
-
-/// The heading of each frame in radians: the turn about +Y that is in the pelvis' rotation, without
-/// jumps of whole turns. A body that is nearly upside down shows none; there it goes straight on
-/// from the frame before to the frame after.
 std::vector<double> headings_of(const JointRotations& motion) {
   constexpr double kShown = 0.25;
   std::vector<double> headings(static_cast<size_t>(motion.frames), 0);
@@ -39,48 +31,8 @@ std::vector<double> headings_of(const JointRotations& motion) {
   return headings;
 }
 
-double smooth(double share) { return share * share * (3 - 2 * share); }
-
-}  // namespace
-
 void keep_in_place(JointRotations& motion) {
   for (Vector3& root : motion.root) root[0] = root[2] = 0;
-}
-
-LoopGap close_loop(JointRotations& motion) {
-  LoopGap gap;
-  if (motion.frames < 2) return gap;
-  const int last = motion.frames - 1;
-  const int spread = std::min(
-      last,
-      std::max(1, std::min(last / 2, static_cast<int>(std::lround(kLongestSpread * motion.fps)))));
-  gap.seconds = spread / motion.fps;
-  const std::vector<double> headings = headings_of(motion);
-  const double turned = headings.back() - headings.front();
-  Vec3 shift = to_vec(motion.root.front()) - to_vec(motion.root.back());
-  gap.travels = std::hypot(shift.x(), shift.z()) > kTravelled || std::abs(turned) > kTurned;
-  if (gap.travels) shift.x() = shift.z() = 0;
-  gap.metres = shift.norm();
-  const Quat turn = motion::yaw_rotation(gap.travels ? turned : 0);
-  for (int j = 0; j < motion.joints(); ++j) {
-    Quat goal = to_quat(motion.rotation(0, j));
-    if (motion.parents[static_cast<size_t>(j)] < 0) goal = turn * goal;
-    const Quat change = to_quat(motion.rotation(last, j)).conjugate() * goal;
-    gap.degrees = std::max(gap.degrees, Quat::Identity().angularDistance(change) * 180 / M_PI);
-    for (int t = last - spread + 1; t <= last; ++t) {
-      const double share = smooth(static_cast<double>(t - last + spread) / spread);
-      const Quat now = to_quat(motion.rotation(t, j)) * Quat::Identity().slerp(share, change);
-      const size_t at = static_cast<size_t>(t) * motion.parents.size() + static_cast<size_t>(j);
-      motion.rotations[at] = from_quat(now.normalized());
-    }
-  }
-  for (int t = last - spread + 1; t <= last; ++t) {
-    const double share = smooth(static_cast<double>(t - last + spread) / spread);
-    Vector3& root = motion.root[static_cast<size_t>(t)];
-    root = from_vec(to_vec(root) + share * shift);
-  }
-  choose_signs(motion);
-  return gap;
 }
 
 JointRotations with_root_joint(const JointRotations& motion, bool heading) {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "remomask/motion_file.h"
+#include <vector>
+
 #include "remomask/rotations.h"
 
 namespace remomask::rig {
@@ -8,10 +9,10 @@ namespace remomask::rig {
 /// Takes the way over the ground out of a motion: the root stays above the origin.
 void keep_in_place(JointRotations& motion);
 
-/// Makes the last frame the first one again. Heights and rotations are closed; place and heading
-/// are, too, unless the motion travels or turns: then they go on from cycle to cycle. The
-/// difference is spread over the last second, or over the last half of a shorter motion.
-LoopGap close_loop(JointRotations& motion);
+/// The heading of each frame in radians: the turn about +Y that is in the pelvis' rotation, without
+/// jumps of whole turns. A body that is nearly upside down shows none; there it goes straight on
+/// from the frame before to the frame after.
+std::vector<double> headings_of(const JointRotations& motion);
 
 /// The motion with one more joint above the pelvis, the first one: it lies on the ground below the
 /// standing body, and it alone has positions. It faces +Z; with `heading` it turns with the body.

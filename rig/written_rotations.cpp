@@ -1,6 +1,7 @@
 #include "rig/written_rotations.h"
 
 #include "rig/joint_names.h"
+#include "rig/loop.h"
 #include "rig/resample_rotations.h"
 #include "rig/root_motion.h"
 
@@ -11,8 +12,9 @@ RotationsToWrite rotations_to_write(const Motion& motion, const MotionWriteOptio
   RotationsToWrite result;
   JointRotations solved = solve_rotations(
       motion, {.own_proportions = options.own_proportions, .keep_rigid = !options.common_skeleton});
-  if (options.in_place) keep_in_place(solved);
+  // The way over the ground goes last, since the loop needs to see which feet stand.
   if (options.loop) result.written.loop = close_loop(solved);
+  if (options.in_place) keep_in_place(solved);
   if (options.fps) solved = resample_rotations(solved, *options.fps);
   result.motion = with_root_joint(solved, options.root_motion);
   const NamePreset& preset = name_preset(options.names.value_or(names));

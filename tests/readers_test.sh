@@ -1,6 +1,7 @@
 #!/bin/bash
 # Readers of other people place every joint of what the program writes where the program has it:
-# three.js, bvhio and pybvh, the validator of glTF, and Blender where it is installed.
+# three.js, bvhio and pybvh, the validator of glTF, and Blender where it is installed. What is
+# generated stands on the floor of a three.js page, in node and, where it is installed, in Chromium.
 #   tests/readers_test.sh PROGRAM CACHE_FOLDER
 # The readers are installed into the cache folder ($REMOMASK_READERS, where that is set). Exits with
 # 77 (skipped) and the reason where node or python3-venv is missing, or the network at first use.
@@ -44,6 +45,26 @@ for bvh in bvh/*.bvh; do
   done
 done
 try node "$cache/scripts/gltf_validate.mjs" glb/*.glb vrma/*.vrma
+
+number=0
+for sentence in "a person walks forward and turns around" "a person does jumping jacks"; do
+  number=$((number + 1))
+  made="generated$number"
+  for file in $made.npy $made.bvh $made.glb $made.vrma; do
+    "$program" --quiet generate "$sentence" --seconds 4 --seed 1 -o "$file" >/dev/null
+  done
+  "$program" --quiet generate "$sentence" --seconds 4 --seed 1 -o "$made.m.bvh" --units m >/dev/null
+  centimetres=("$made.npy" 0.01 "$made.bvh" "$made.glb" "$made.vrma")
+  metres=("$made.npy" 1 "$made.m.bvh")
+  try node "$cache/scripts/stands_node.mjs" "${centimetres[@]}"
+  try node "$cache/scripts/stands_node.mjs" "${metres[@]}"
+  if command -v chromium >/dev/null; then
+    try node "$cache/scripts/stands_chromium.mjs" "${centimetres[@]}"
+    try node "$cache/scripts/stands_chromium.mjs" "${metres[@]}"
+  else
+    echo "Chromium is not installed: not tried"
+  fi
+done
 # Debian 12's Blender cannot open any BVH file.
 if command -v blender >/dev/null; then
   glb=(glb/*.glb)

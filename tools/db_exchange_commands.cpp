@@ -6,6 +6,7 @@
 #include "formats/motion_writing.h"
 #include "tools/clip_selection.h"
 #include "tools/db_commands.h"
+#include "tools/output_path.h"
 #include "tools/write_options.h"
 
 namespace remomask::tools {
@@ -53,33 +54,60 @@ void register_merge(CLI::App& group, Program& program) {
   });
 }
 
+struct ExportCommand {
+  std::string database, folder;
+  std::string format = "npy";
+  WriteOptions writing;
+  ClipSelection selection;
+  OutputOptions overwrite;
+  bool resume = false, one_file = false;
+};
+
+void export_one_file(const ExportCommand& command, Program& program) {
+  const MotionWriteOptions writing = command.writing.chosen(command.folder);
+  require_writable_output(command.folder);
+  const db::Database database(command.database, db::OpenMode::read_only);
+  const auto ids = command.selection.ids(database);
+  command.overwrite.check(command.folder, command.database, program);
+  exchange::export_together(database, ids, command.folder, writing, program.monitor());
+  program.finish_progress();
+  if (program.json) {
+    return program.print_json({{"output", command.folder}, {"clips", ids.size()}});
+  }
+  fmt::print("{}: {}\n", command.folder, counted(static_cast<int64_t>(ids.size()), "clip"));
+}
+
 void register_export(CLI::App& group, Program& program) {
-  struct Options {
-    std::string database, folder;
-    std::string format = "npy";
-    WriteOptions writing;
-    ClipSelection selection;
-    bool resume = false;
-  };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportCommand>();
   CLI::App* command =
       add_command(group, "export", "write clips as files that remomask import reads back",
-                  "remomask db export motions.sqlite my_clips --tag good --format bvh");
+                  "remomask db export motions.sqlite my_clips --tag good --format bvh\n"
+                  "  remomask db export motions.sqlite good.glb --one-file --tag good");
   command->add_option("database", options->database, "database file")->required();
-  command->add_option("folder", options->folder, "new or empty folder")->required();
+  command->add_option("folder", options->folder, "new or empty folder; with --one-file: a file")
+      ->required();
   options->selection.add(*command);
   std::vector<std::string> known;
   for (const formats::MotionFormat& format : formats::written_formats()) {
     known.emplace_back(format.extension.substr(1));
   }
-  command
-      ->add_option("--format", options->format,
-                   "npy (default) keeps the exact positions, the others open in other programs")
-      ->check(CLI::IsMember(known));
+  CLI::Option* format =
+      command
+          ->add_option("--format", options->format,
+                       "npy (default) keeps the exact positions, the others open in other programs")
+          ->check(CLI::IsMember(known));
   options->writing.add(*command);
   options->writing.add_own_proportions(*command);
-  command->add_flag("--resume", options->resume, "go on with an export that was stopped");
+  CLI::Option* resume =
+      command->add_flag("--resume", options->resume, "go on with an export that was stopped");
+  command
+      ->add_flag("--one-file", options->one_file,
+                 "all clips as the animations of one .glb or .fbx file")
+      ->excludes(format)
+      ->excludes(resume);
+  options->overwrite.add(*command);
   command->callback([options, &program] {
+    if (options->one_file) return export_one_file(*options, program);
     exchange::ExportOptions writing;
     writing.resume = options->resume;
     writing.extension = "." + options->format;

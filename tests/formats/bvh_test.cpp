@@ -129,7 +129,10 @@ TEST(Bvh, NamesTheLineOfEveryFault) {
     const char* message;
   };
   const Case cases[] = {
-      {"empty", "", 1, "starts with HIERARCHY"},
+      {"empty", "", 1, "is empty"},
+      {"decimal comma", with("OFFSET 0 -5 0", "OFFSET 0 -5,5 0"), 8, "not a decimal comma"},
+      {"decimal comma in a frame", with("10 20 30 90", "10 20,5 30 90"), 20, "decimal comma"},
+      {"no time", with("Frame Time: 0.0333333", "Frame Time:"), 18, "Frame Time: nothing"},
       {"other format", "<xml/>", 1, "starts with HIERARCHY"},
       {"no root", "HIERARCHY\n", 2, "truncated"},
       {"root without a name", with("MOTION", "ROOT"), 16, "no name"},

@@ -118,6 +118,8 @@ TEST(BvhTolerance, SpellingsOfTheSameFileReadTheSame) {
       {"Frame Time first",
        replaced(kPlain, "Frames: 3\nFrame Time: 0.04", "Frame Time: .04\nFrames: 3")},
       {"tab after the colon", replaced(kPlain, "Time: ", "Time:\t")},
+      {"zeros that fill a block", kPlain + std::string(64, '\0')},
+      {"the end of a file of DOS", kPlain + "\x1a"},
       {"UTF-8 with mark", "\xEF\xBB\xBF" + kPlain},
       {"UTF-16, little-endian", utf16(kPlain, false, true)},
       {"UTF-16, big-endian", utf16(kPlain, true, true)},
@@ -166,6 +168,12 @@ TEST(BvhTolerance, AWrongNumberOfFramesIsAWarning) {
   EXPECT_TRUE(mentions(bvh.warnings, "no line \"Frames:\""));
 }
 
+TEST(BvhTolerance, ANumberOfFramesThatIsLeftOutIsAWarning) {
+  const formats::Bvh bvh = formats::parse_bvh(replaced(kPlain, "Frames: 3", "Frames:"), "x.bvh");
+  expect_same(bvh, "no number of frames");
+  EXPECT_TRUE(mentions(bvh.warnings, "Frames: says nothing, the file holds 3"));
+}
+
 TEST(BvhTolerance, JointsOfTheSameNameAreRenamed) {
   const formats::Bvh bvh =
       formats::parse_bvh(replaced(kPlain, "JOINT foot", "JOINT knee"), "x.bvh");
@@ -202,7 +210,8 @@ TEST(BvhTolerance, OneOfSeveralSkeletonsIsChosenByItsRoot) {
 }
 
 TEST(BvhTolerance, AKnownRateMakesUpForTheFrameTime) {
-  for (const char* time : {"Frame Time: 0", "Frame Time: 30", "Frame Time: x", "Frame Time: nan"}) {
+  for (const char* time :
+       {"Frame Time: 0", "Frame Time: 30", "Frame Time: x", "Frame Time: nan", "Frame Time:"}) {
     const std::string text = replaced(kPlain, "Frame Time: 0.04", time);
     EXPECT_NE(error_of_bvh(text).find("--fps"), std::string::npos) << time;
     EXPECT_EQ(formats::parse_bvh(text, "x.bvh", {.frame_time_known = true}).frame_time, 0) << time;

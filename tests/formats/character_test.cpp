@@ -77,10 +77,7 @@ TEST(Character, AFigureOfAnyKindGivesItsSkeletonAsBvh) {
     MotionFileOptions as_it_is;
     as_it_is.canonical = false;
     const Motion read = load_motion(path, as_it_is).motion;
-    // Our FBX has no joint "Root", so its names are not taken for our own: trunk and collars are
-    // found by rule, when it is a figure and when the result is read, and differ by centimetres.
-    const double tolerance = extension == std::string(".fbx") ? 0.08 : 0.02;
-    EXPECT_LT(testing_support::largest_difference(read, expected), tolerance) << extension;
+    EXPECT_LT(testing_support::largest_difference(read, expected), 0.02) << extension;
   }
 }
 

@@ -38,6 +38,32 @@ formats::NpyArray frames_last(const formats::NpyArray& array) {
   return result;
 }
 
+/// The same with joints first: (joints, T, 3).
+formats::NpyArray joints_first(const formats::NpyArray& array) {
+  formats::NpyArray result{{array.shape[1], array.shape[0], 3}, {}};
+  for (size_t j = 0; j < array.shape[1]; ++j) {
+    for (size_t t = 0; t < array.shape[0]; ++t) {
+      const float* p = array.values.data() + (t * array.shape[1] + j) * 3;
+      result.values.insert(result.values.end(), p, p + 3);
+    }
+  }
+  return result;
+}
+
+/// The same with axes before joints: (T, 3, joints).
+formats::NpyArray axes_first(const formats::NpyArray& array) {
+  const size_t joints = array.shape[1];
+  formats::NpyArray result{{array.shape[0], 3, joints}, {}};
+  for (size_t t = 0; t < array.shape[0]; ++t) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      for (size_t j = 0; j < joints; ++j) {
+        result.values.push_back(array.values[(t * joints + j) * 3 + axis]);
+      }
+    }
+  }
+  return result;
+}
+
 formats::NpyArray reshaped(formats::NpyArray array, const Shape& shape) {
   array.shape = shape;
   return array;
@@ -67,6 +93,14 @@ TEST(JointArray, ReadsTheShapesOfOtherPrograms) {
       {"(1, T, 66)", reshaped(ours, {1, t, 66})},
       {"(22, 3, T)", frames_last(ours)},
       {"(1, 22, 3, T)", reshaped(frames_last(ours), {1, 22, 3, t})},
+      {"(T, 1, 22, 3)", reshaped(ours, {t, 1, 22, 3})},
+      {"(T, 22, 3, 1)", reshaped(ours, {t, 22, 3, 1})},
+      {"(22, T, 3)", joints_first(ours)},
+      {"(T, 3, 22)", axes_first(ours)},
+      {"(T, 45, 3)", joints_array(motion, 45)},
+      {"(T, 73, 3)", joints_array(motion, 73)},
+      {"(T, 127, 3)", joints_array(motion, 127)},
+      {"(T, 144, 3)", joints_array(motion, 144)},
       {"(T, 24, 3)", joints_array(motion, 24)},
       {"(T, 52, 3)", joints_array(motion, 52)},
       {"(T, 55, 3)", joints_array(motion, 55)},
@@ -81,6 +115,22 @@ TEST(JointArray, ReadsTheShapesOfOtherPrograms) {
     const bool all = array.values.size() == ours.values.size();
     EXPECT_EQ(warnings.size(), all ? 0u : 1u) << what;
   }
+}
+
+TEST(JointArray, FeaturesMayHaveFramesLast) {
+  const size_t frames = 9, width = 263;
+  formats::NpyArray rows{{frames, width}, std::vector<float>(frames * width)};
+  for (size_t i = 0; i < rows.values.size(); ++i) {
+    rows.values[i] = 0.1f * static_cast<float>(std::sin(0.37 * static_cast<double>(i)));
+  }
+  formats::NpyArray last{{1, width, 1, frames}, {}};
+  for (size_t column = 0; column < width; ++column) {
+    for (size_t t = 0; t < frames; ++t) last.values.push_back(rows.values[t * width + column]);
+  }
+  std::vector<std::string> warnings;
+  EXPECT_EQ(largest_difference(formats::motion_of_array(last, "x", warnings),
+                               formats::motion_of_array(rows, "x", warnings)),
+            0);
 }
 
 TEST(JointArray, ShortMotionsAreNotMistakenForOtherShapes) {

@@ -89,6 +89,21 @@ struct AmassData {
   std::vector<float> poses, trans;
 };
 
+/// The turns of some joints as rotation matrices.
+std::vector<float> matrices(const AmassData& data, size_t first, size_t end) {
+  std::vector<float> values;
+  for (size_t t = 0; t < 40; ++t) {
+    for (size_t joint = first; joint < end; ++joint) {
+      const float* p = data.poses.data() + t * data.width + 3 * joint;
+      const Vec3 turn(p[0], p[1], p[2]);
+      Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+      if (turn.norm() > 0) matrix = Eigen::AngleAxisd(turn.norm(), turn.normalized());
+      for (int i = 0; i < 9; ++i) values.push_back(static_cast<float>(matrix(i / 3, i % 3)));
+    }
+  }
+  return values;
+}
+
 }  // namespace
 
 TEST(Npz, ReadsOnlyTheArraysThatAreWanted) {
@@ -142,7 +157,8 @@ TEST(Npz, ArraysOfJoints) {
   const Motion motion = make_walker(30);
   MotionFileOptions as_it_is;
   as_it_is.canonical = false;
-  for (const char* name : {"joints.npy", "positions.npy", "arr_0.npy"}) {
+  for (const char* name :
+       {"joints.npy", "positions.npy", "arr_0.npy", "joints3d.npy", "motion.npy"}) {
     const std::string path = write_zip("joints.npz", {{name, npy({30, 22, 3}, motion.positions)}});
     const LoadedMotion loaded = load_motion(path, as_it_is);
     EXPECT_EQ(largest_difference(loaded.motion, motion), 0) << name;
@@ -153,6 +169,15 @@ TEST(Npz, ArraysOfJoints) {
   EXPECT_EQ(load_motion(path).motion.frames, 59);
   as_it_is.fps = 40;
   EXPECT_EQ(load_motion(path, as_it_is).motion.frames, 15);
+}
+
+TEST(Npz, PosesGoBeforeArraysOfALooseName) {
+  const AmassData data(52);
+  const std::string path = write_zip("both.npz", {{"poses.npy", data.poses_npy()},
+                                                  {"trans.npy", data.trans_npy()},
+                                                  {"motion.npy", npy_of_objects()},
+                                                  {"mocap_framerate.npy", npy({}, {20})}});
+  EXPECT_EQ(load_motion(path).motion.frames, 40);
 }
 
 TEST(Npz, ObjectsAndOtherArraysAreRefused) {
@@ -185,6 +210,13 @@ TEST(Amass, BothSpellingsAndAllBodiesReadTheSame) {
       write_zip("smpl.npz", {{"poses.npy", smpl.poses_npy()},
                              {"trans.npy", smpl.trans_npy()},
                              {"mocap_framerate.npy", rate}}),
+      write_zip("batch.npz", {{"pose.npy", npy({1, 40, 72}, smpl.poses)},
+                              {"trans.npy", npy({1, 40, 3}, smpl.trans)},
+                              {"mocap_framerate.npy", rate}}),
+      write_zip("matrices.npz", {{"global_orient.npy", npy({40, 1, 3, 3}, matrices(smpl, 0, 1))},
+                                 {"body_pose.npy", npy({40, 21, 3, 3}, matrices(smpl, 1, 22))},
+                                 {"transl.npy", smpl.trans_npy()},
+                                 {"mocap_framerate.npy", rate}}),
       write_zip("smplx.npz", {{"root_orient.npy", npy({40, 3}, root)},
                               {"pose_body.npy", npy({40, 63}, body)},
                               {"poses.npy", smplx.poses_npy()},
@@ -192,7 +224,7 @@ TEST(Amass, BothSpellingsAndAllBodiesReadTheSame) {
                               {"mocap_frame_rate.npy", rate}}),
   };
   const LoadedMotion first = load_motion(paths[0]);
-  EXPECT_EQ(first.motion.frames, 14);  // 39 steps at 60 fps
+  ASSERT_EQ(first.motion.frames, 14);  // 39 steps at 60 fps
   EXPECT_EQ(first.up_axis, 'Z');
   EXPECT_EQ(first.metres_per_unit, 1);
   EXPECT_TRUE(npz_mentions(first.warnings, "betas"));

@@ -1,4 +1,4 @@
-// Reads the arrays of an .npz file: a zip archive of .npy files.
+// Reads .npy files, and .npz files, which are zip archives of them.
 import {readFileSync} from 'node:fs';
 import {inflateRawSync} from 'node:zlib';
 
@@ -32,4 +32,12 @@ export function readNpz(path) {
     at += 46 + nameLength + zip.readUInt16LE(at + 30) + zip.readUInt16LE(at + 32);
   }
   return entries;
+}
+
+// Where the hips are in a .npy file of [frames][22][3] positions at 20 frames a second.
+export function hipsOf(path) {
+  const {shape: [frames, joints], values} = array(readFileSync(path));
+  const hips = [];
+  for (let t = 0; t < frames; ++t) hips.push(...values.slice(3 * joints * t, 3 * joints * t + 3));
+  return {frames, fps: 20, hips};
 }

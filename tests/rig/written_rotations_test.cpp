@@ -116,6 +116,41 @@ TEST(WrittenRotations, ALoopEndsAsItBegins) {
       3e-3);
 }
 
+TEST(WrittenRotations, StandingFeetDoNotSlideAtTheSeamOfALoop) {
+  const Motion walk = make_walker(47);
+  const Motion sway = testing_support::make_swaying_statue(40);
+  for (const Motion* source : {&walk, &sway}) {
+    const Motion plain = joint_positions(rig::rotations_to_write(*source, {}).motion);
+    const rig::RotationsToWrite written = rig::rotations_to_write(*source, {.loop = true});
+    const Motion loop = joint_positions(written.motion);
+    const auto slide = [](const Motion& motion, int frame, int toe) {
+      Vec3 way = joint_position(motion, frame, toe) - joint_position(motion, frame - 1, toe);
+      way.y() = 0;
+      return way.norm();
+    };
+    for (const int toe : {10, 11}) {
+      for (int t = 1; t < loop.frames; ++t) {
+        // A foot that stood before the loop was closed: 4 mm are 8 cm a second.
+        if (slide(plain, t, toe) >= 0.002) continue;
+        EXPECT_LT(slide(loop, t, toe), 0.004) << t << " " << toe;
+      }
+    }
+    // The step over the seam, from the last frame to the second of the next cycle, is that from
+    // the first frame to the second one.
+    const Quat turn =
+        motion::yaw_rotation(written.written.loop->travels
+                                 ? heading(to_quat(written.motion.rotation(loop.frames - 1, 1))) -
+                                       heading(to_quat(written.motion.rotation(0, 1)))
+                                 : 0);
+    for (const int toe : {10, 11}) {
+      const Vec3 first = joint_position(loop, 0, toe) - joint_position(loop, 0, 0);
+      const Vec3 last =
+          joint_position(loop, loop.frames - 1, toe) - joint_position(loop, loop.frames - 1, 0);
+      EXPECT_LT((turn * first - last).norm(), 2e-3) << toe;
+    }
+  }
+}
+
 TEST(WrittenRotations, OtherFrameRatesKeepTheMotion) {
   const Motion motion = make_walker(41, [](int t) { return 0.02 * t; });
   const JointRotations solved = solve_rotations(motion);
@@ -168,7 +203,8 @@ TEST(JointNames, PresetsAreComplete) {
     const rig::NamePreset* found = rig::find_name_preset(list);
     ASSERT_NE(found, nullptr);
     EXPECT_EQ(found->joints, preset.joints);
-    EXPECT_EQ(rig::find_name_preset({list.begin() + 1, list.end()}), nullptr);
+    names.erase(std::string(preset.joints[10]));
+    EXPECT_EQ(rig::find_name_preset({names.begin(), names.end()}), nullptr);
   }
   EXPECT_EQ(rig::name_preset(JointNames::unreal).joints[7], "foot_l");
   EXPECT_EQ(rig::name_preset(JointNames::mixamo).joints[10], "LeftToeBase");
