@@ -50,6 +50,6 @@ std::string shipped_file(const std::string& name) {
 }
 
 std::string shipped_model() { return shipped_file("base.safetensors"); }
-std::string shipped_database() { return shipped_file("procedural.sqlite"); }
+std::string shipped_database() { return shipped_file("motions.sqlite"); }
 
 }  // namespace remomask

@@ -4,7 +4,7 @@
 // _p95. Floor: reading all motion vectors once.
 //
 // Takes the model that REMOMASK_MODEL names (else models/base.safetensors) and the
-// database that REMOMASK_DATABASE names (else models/procedural.sqlite), indexed
+// database that REMOMASK_DATABASE names (else models/motions.sqlite), indexed
 // for that model.
 
 #include <ATen/core/Tensor.h>
@@ -28,7 +28,7 @@ constexpr int kQueries = 200;
 struct Searched {
   retriever::Retriever retriever{
       nn::load_model(file_named("REMOMASK_MODEL", "base.safetensors")).at("retriever")};
-  db::Database database{file_named("REMOMASK_DATABASE", "procedural.sqlite"),
+  db::Database database{file_named("REMOMASK_DATABASE", "motions.sqlite"),
                         db::OpenMode::read_only};
   std::shared_ptr<const search::SearchState> state = std::make_shared<search::SearchState>(
       index::VectorIndex::open(index::default_index_path(database.path()), database,

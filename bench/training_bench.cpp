@@ -1,7 +1,7 @@
 // Training steps of preset base, each network as `remomask train` trains it (loss,
 // gradients, AdamW, weight averaging, momentum twins, queues, codebooks), on the
 // training clips of the database that REMOMASK_DATABASE names (else
-// models/procedural.sqlite), with 1 thread and with all. Floor: the matrix products and
+// models/motions.sqlite), with 1 thread and with all. Floor: the matrix products and
 // convolutions of the same steps at the GEMM peak of as many threads. Read the counters:
 // one iteration is a whole short training.
 
@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 const training::TrainingSplits& training_clips() {
   static const training::TrainingSplits splits = [] {
-    const db::Database database(file_named("REMOMASK_DATABASE", "procedural.sqlite"),
+    const db::Database database(file_named("REMOMASK_DATABASE", "motions.sqlite"),
                                 db::OpenMode::read_only);
     return training::TrainingSplits{
         db::load_training_set(database, {}), {}, {}};  // no val: steps alone

@@ -38,8 +38,8 @@ if(TARGET remomask-core)
   install(TARGETS remomask-core LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/remomask)
 endif()
 install(FILES
-    models/base.safetensors models/evaluator.safetensors models/procedural.sqlite
-    models/procedural.sqlite.index models/README.md rig/skeleton_maps.json
+    models/base.safetensors models/evaluator.safetensors models/motions.sqlite
+    models/motions.sqlite.index models/text.safetensors models/text.LICENSE models/README.md rig/skeleton_maps.json
   DESTINATION ${data})
 install(DIRECTORY models/attributions DESTINATION ${data})
 

@@ -21,8 +21,8 @@ library=$(find "$prefix" -name 'libremomask.so' -o -name 'libremomask.a')
 libdir=$(dirname "$library")
 
 for file in bin/remomask include/remomask/text_to_motion.h share/remomask/base.safetensors \
-  share/remomask/evaluator.safetensors share/remomask/procedural.sqlite \
-  share/remomask/procedural.sqlite.index share/remomask/skeleton_maps.json \
+  share/remomask/evaluator.safetensors share/remomask/motions.sqlite \
+  share/remomask/motions.sqlite.index share/remomask/skeleton_maps.json \
   share/remomask/README.md share/doc/remomask/README.md share/doc/remomask/LICENSE \
   share/doc/remomask/CHANGELOG.md share/doc/remomask/docs/search.md \
   share/doc/remomask/examples/CMakeLists.txt share/man/man1/remomask.1 \
@@ -55,7 +55,7 @@ cmake -S "$work/source" -B "$work/examples" -DCMAKE_BUILD_TYPE=Release \
   fail "a user of the shared library must not need libtorch's CMake files"
 cmake --build "$work/examples" -j 2 >"$work/log" || { cat "$work/log"; exit 1; }
 shipped=$prefix/share/remomask
-"$work/examples/sample_search" "$shipped/base.safetensors" "$shipped/procedural.sqlite" \
+"$work/examples/sample_search" "$shipped/base.safetensors" "$shipped/motions.sqlite" \
   "a person waves the right hand" | tee "$work/found"
 grep -q wav "$work/found"
 (cd "$work" && "$work/examples/sample_generate_with_evidence" "a person waves" motion.bvh)
@@ -113,8 +113,8 @@ bash -c '. "$1"; COMP_WORDS=(remomask search --min-s); COMP_CWORD=2; _remomask; 
   - "$completion" | grep -x -e --min-seconds >/dev/null || fail "the completion lacks options"
 
 # It was the installed database, not that of the source tree.
-echo damaged >"$prefix/share/remomask/procedural.sqlite"
+echo damaged >"$prefix/share/remomask/motions.sqlite"
 if "$remomask" search "a person waves the right hand" >found 2>&1; then
   fail "the installed program reads other files than the installed ones"
 fi
-grep -q "share/remomask/procedural.sqlite" found || { cat found; exit 1; }
+grep -q "share/remomask/motions.sqlite" found || { cat found; exit 1; }

@@ -7,7 +7,7 @@ build=$(cd "$1" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export REMOMASK_MODELS=$root/models
-cp "$REMOMASK_MODELS"/procedural.sqlite* "$work"
+cp "$REMOMASK_MODELS"/motions.sqlite* "$work"
 cd "$work"
 model=$REMOMASK_MODELS/base.safetensors
 sample() {
@@ -17,12 +17,12 @@ sample() {
 }
 says() { grep -q -e "$2" "$1.txt" || { cat "$1.txt"; echo "sample_$1 does not say \"$2\"" >&2; exit 1; }; }
 
-sample search "$model" procedural.sqlite "a person jumps"
+sample search "$model" motions.sqlite "a person jumps"
 says search '^1\. .*jump'
 sample generate_with_evidence "a person walks forward" walk.bvh
 says generate_with_evidence '^read .*followed'
 grep -q '"schema": "remomask.motion/1"' walk.bvh.json
-sample search_by_example "$model" procedural.sqlite walk.bvh
+sample search_by_example "$model" motions.sqlite walk.bvh
 says search_by_example 'described by: '
 says search_by_example 'arms like it: '
 sample edit_a_span walk.bvh 0.5 1.5 "someone waves" waving.bvh
@@ -32,7 +32,7 @@ says long_script '3 of 3'
 grep -q '^Frames: 160' day.bvh
 sample stream_rotations "a person waves the right hand"
 [ "$(grep -c right_elbow stream_rotations.txt)" = 40 ]
-sample add_clips "$model" procedural.sqlite waving.bvh "an acrobat somersaults"
+sample add_clips "$model" motions.sqlite waving.bvh "an acrobat somersaults"
 says add_clips '^added waving'
 says add_clips '^found: waving'
 sample readme

@@ -32,7 +32,7 @@ std::string FileOptions::text_path() const {
 }
 
 std::string FileOptions::database_path() const {
-  return database.empty() ? shipped_file("procedural.sqlite") : database;
+  return database.empty() ? shipped_file("motions.sqlite") : database;
 }
 
 void FilterOptions::add(CLI::App& command) {

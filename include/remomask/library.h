@@ -10,7 +10,7 @@
 
 namespace remomask {
 
-/// Path of a file that is shipped with remomask ("base.safetensors", "procedural.sqlite"): in
+/// Path of a file that is shipped with remomask ("base.safetensors", "motions.sqlite"): in
 /// the folder that $REMOMASK_MODELS names, or where remomask was installed. Throws Error if it
 /// is not there.
 REMOMASK_API std::string shipped_file(const std::string& name);

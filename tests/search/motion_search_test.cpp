@@ -28,6 +28,11 @@ namespace {
 const std::string kModels = REMOMASK_SOURCE_DIR "/models/";
 const std::string kModel = kModels + "base.safetensors";
 
+/// These tests are of the comparison with motions; tests/search/word_search_test.cpp has the rest.
+struct MotionQuery : SearchQuery {
+  MotionQuery() { by = SearchBy::motion; }
+};
+
 double dot(std::span<const float> left, std::span<const float> right) {
   return std::inner_product(left.begin(), left.end(), right.begin(), 0.0);
 }
@@ -55,7 +60,7 @@ class MotionSearchTest : public ::testing::Test {
       index::VectorIndex::build(database, retriever_->hash()).save(path + ".index");
     }
     database_ = new db::Database(path, db::OpenMode::read_only);
-    search_ = new search::MotionSearch(kModel, path);
+    search_ = new search::MotionSearch(kModel, "", path);
   }
   static void TearDownTestSuite() {
     delete search_;
@@ -161,7 +166,7 @@ db::Database* MotionSearchTest::database_ = nullptr;
 search::MotionSearch* MotionSearchTest::search_ = nullptr;
 
 TEST_F(MotionSearchTest, FindsBySentence) {
-  SearchQuery query;
+  MotionQuery query;
   query.text = "a person walks";
   const auto text = encode(query.text);
   expect_exact_however_filtered(
@@ -169,7 +174,7 @@ TEST_F(MotionSearchTest, FindsBySentence) {
 }
 
 TEST_F(MotionSearchTest, FindsByMotion) {
-  SearchQuery query;
+  MotionQuery query;
   query.like_clip = "clip7";
   const auto like = vectors_of("clip7");
   expect_exact_however_filtered(
@@ -177,7 +182,7 @@ TEST_F(MotionSearchTest, FindsByMotion) {
 }
 
 TEST_F(MotionSearchTest, FindsByBodyParts) {
-  SearchQuery query;
+  MotionQuery query;
   query.like_clip = "clip7";
   query.parts = {"arms", "left_leg"};
   const auto like = vectors_of("clip7");
@@ -200,7 +205,7 @@ TEST_F(MotionSearchTest, FindsByBodyParts) {
 }
 
 TEST_F(MotionSearchTest, FindsBySentenceAndMotion) {
-  SearchQuery query;
+  MotionQuery query;
   query.text = "a person waves";
   query.like_clip = "clip20";
   query.text_weight = 0.5;
@@ -213,7 +218,7 @@ TEST_F(MotionSearchTest, FindsBySentenceAndMotion) {
 }
 
 TEST_F(MotionSearchTest, CountsWhatItFolded) {
-  SearchQuery query;
+  MotionQuery query;
   query.text = "a person walks";
   SearchAnswer answer = search_->search(query);
   EXPECT_EQ(answer.candidates, kClips);
@@ -234,7 +239,7 @@ TEST_F(MotionSearchTest, CountsWhatItFolded) {
 }
 
 TEST_F(MotionSearchTest, LimitsRefuseAndSayWhat) {
-  SearchQuery query;
+  MotionQuery query;
   query.text = "a person walks";
   query.k = 30;
   const SearchAnswer all = search_->search(query);
@@ -257,7 +262,7 @@ TEST_F(MotionSearchTest, LimitsRefuseAndSayWhat) {
 }
 
 TEST_F(MotionSearchTest, CaptionsAreThoseOfNearClipsByTheirOwnCosine) {
-  SearchQuery query;
+  MotionQuery query;
   query.like_clip = "clip3";
   query.filter.splits = {"train"};  // 45 clips, all are near enough
   query.k = 100;
@@ -286,7 +291,7 @@ TEST_F(MotionSearchTest, CaptionsAreThoseOfNearClipsByTheirOwnCosine) {
 }
 
 TEST_F(MotionSearchTest, LeavesUnwantedWordsOutByTheirStem) {
-  SearchQuery query;
+  MotionQuery query;
   query.text = "a person -waving walks -nonsense";
   query.k = 200;
   const auto text = encode("a person walks");
@@ -310,7 +315,7 @@ TEST_F(MotionSearchTest, LeavesUnwantedWordsOutByTheirStem) {
 }
 
 TEST_F(MotionSearchTest, BoostsWordsByReciprocalRanks) {
-  SearchQuery query;
+  MotionQuery query;
   query.text = "a person walks";
   query.boost_words = "hands, & number 7";
   query.k = 20;
@@ -363,8 +368,8 @@ TEST_F(MotionSearchTest, SeesWhatOthersHaveChanged) {
   add_test_clip(database, named_clip("older"));
   store_random_vectors(database, 1);
   index::VectorIndex::build(database, retriever_->hash()).save(path + ".index");
-  const search::MotionSearch search(kModel, path);
-  SearchQuery query;
+  const search::MotionSearch search(kModel, "", path);
+  MotionQuery query;
   query.like_clip = "old";
   query.parts = {"arms"};
   EXPECT_EQ(search.search(query).hits.size(), 1u);
@@ -386,8 +391,8 @@ TEST_F(MotionSearchTest, ProbabilitiesAreThoseOfTheStoredCalibration) {
   for (const char* name : {"a", "b", "c", "d", "e"}) add_test_clip(database, named_clip(name));
   store_random_vectors(database, 3);
   index::VectorIndex::build(database, retriever_->hash()).save(path + ".index");
-  const search::MotionSearch search(kModel, path);
-  SearchQuery query;
+  const search::MotionSearch search(kModel, "", path);
+  MotionQuery query;
   query.text = "a person walks";
   const SearchAnswer plain = search.search(query);
   ASSERT_EQ(plain.hits.size(), 5u);
@@ -427,7 +432,7 @@ TEST_F(MotionSearchTest, ProbabilitiesAreThoseOfTheStoredCalibration) {
 }
 
 TEST_F(MotionSearchTest, AnswersSeveralThreadsAlike) {
-  SearchQuery query;
+  MotionQuery query;
   query.text = "a person kicks";
   query.like_clip = "clip11";
   query.parts = {"legs"};
@@ -450,9 +455,9 @@ TEST_F(MotionSearchTest, AnswersSeveralThreadsAlike) {
 }
 
 TEST_F(MotionSearchTest, StoredMotionsAndMomentsOfTheShippedDatabase) {
-  const search::MotionSearch shipped(kModel, kModels + "procedural.sqlite");
-  const db::Database database(kModels + "procedural.sqlite", db::OpenMode::read_only);
-  SearchQuery query;
+  const search::MotionSearch shipped(kModel, "", kModels + "motions.sqlite");
+  const db::Database database(kModels + "motions.sqlite", db::OpenMode::read_only);
+  MotionQuery query;
   query.k = 1;
   for (const char* name : {"procedural-walk-circle-left-000", "procedural-walk-slow-000"}) {
     query.motion = database.motion(*database.find_name(name));

@@ -100,7 +100,7 @@ TEST(SearchSample, FindsInTheShippedDatabase) {
   std::string log;
   const std::string example = "'" REMOMASK_SAMPLE "' ";
   ASSERT_EQ(run_shell(example + "$REMOMASK_MODELS/base.safetensors "
-                                "$REMOMASK_MODELS/procedural.sqlite 'a person jumps'",
+                                "$REMOMASK_MODELS/motions.sqlite 'a person jumps'",
                       scratch.path(""), log),
             0)
       << log;

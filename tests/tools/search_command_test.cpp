@@ -26,7 +26,7 @@ TEST(SearchCommand, FindsByMotionPartsAndBoth) {
     EXPECT_EQ(hit["folded"], 0);
   }
   const auto shipped =
-      run_json({"info", std::string(REMOMASK_SOURCE_DIR) + "/models/procedural.sqlite"});
+      run_json({"info", std::string(REMOMASK_SOURCE_DIR) + "/models/motions.sqlite"});
   const int others = shipped["clips"].get<int>() - 1;
   const auto arms = run_json({"search", "--like-clip", kStored, "--parts", "arms", "--ungrouped",
                               "-k", std::to_string(others)});
@@ -38,7 +38,7 @@ TEST(SearchCommand, FindsByMotionPartsAndBoth) {
 
 TEST(SearchCommand, ReadsMotionFilesAndPiecesOfThem) {
   const ScratchFolder scratch;
-  run_json({"db", "export", std::string(REMOMASK_SOURCE_DIR) + "/models/procedural.sqlite",
+  run_json({"db", "export", std::string(REMOMASK_SOURCE_DIR) + "/models/motions.sqlite",
             scratch.path("clips"), kStored, "--format", "npy"});
   const std::string walk = scratch.path("clips/" + kStored + ".npy");
   const auto whole = run_json({"search", "--like", walk, "-k", "1"});
