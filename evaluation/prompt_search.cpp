@@ -173,11 +173,12 @@ bool answers_prompt(const nlohmann::json& labels, const SearchPrompt& prompt) {
 PromptReport measure_prompt_search(const search::MotionSearch& search,
                                    const std::vector<SearchPrompt>& prompts,
                                    const std::map<int64_t, nlohmann::json>& labels,
-                                   const ClipFilter& filter, const BootstrapOptions& bootstrap,
-                                   const Monitor& monitor) {
-  const Measurement measurement(search, labels, filter);
-  constexpr SearchBy kWays[] = {SearchBy::all, SearchBy::captions, SearchBy::words,
-                                SearchBy::motion};
+                                   const PromptSearchOptions& options, const Monitor& monitor) {
+  const Measurement measurement(search, labels, options.filter);
+  std::vector<SearchBy> ways = {SearchBy::all};
+  if (options.each_part) {
+    ways.insert(ways.end(), {SearchBy::captions, SearchBy::words, SearchBy::motion});
+  }
   std::map<SearchBy, FirstRanks> ranks;
   FirstRanks random;
   PromptReport report;
@@ -186,7 +187,7 @@ PromptReport measure_prompt_search(const search::MotionSearch& search,
     if (monitor.stop_requested()) throw Interrupted("the evaluation was stopped");
     const SearchPrompt& prompt = prompts[i];
     const bool answerable = !prompt.labels.empty();
-    for (const SearchBy by : kWays) {
+    for (const SearchBy by : ways) {
       if (by != SearchBy::all && !answerable) continue;
       const SearchAnswer answer = measurement.answer(prompt, by);
       if (by == SearchBy::all) {
@@ -208,10 +209,10 @@ PromptReport measure_prompt_search(const search::MotionSearch& search,
     monitor.report(
         {"search", static_cast<double>(i + 1), static_cast<double>(prompts.size()), "prompts"});
   }
-  for (const SearchBy by : kWays) {
-    report.figures.push_back(summarise(search_by_name(by), ranks[by], bootstrap));
+  for (const SearchBy by : ways) {
+    report.figures.push_back(summarise(search_by_name(by), ranks[by], options.bootstrap));
   }
-  report.figures.push_back(summarise("random", random, bootstrap));
+  report.figures.push_back(summarise("random", random, options.bootstrap));
   report.refused = report.unanswerable > 0 ? static_cast<double>(refused) / report.unanswerable : 0;
   summarise_probabilities(report);
   return report;

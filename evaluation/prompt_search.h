@@ -54,12 +54,17 @@ struct PromptReport {
   std::vector<std::string> missed;  ///< prompts without a right clip among the first five
 };
 
+struct PromptSearchOptions {
+  ClipFilter filter;
+  bool each_part = true;  ///< false: by everything alone
+  BootstrapOptions bootstrap;
+};
+
 /// Searches for each prompt by everything and by each part; hits are grouped. `labels` by clip id.
 PromptReport measure_prompt_search(const search::MotionSearch& search,
                                    const std::vector<SearchPrompt>& prompts,
                                    const std::map<int64_t, nlohmann::json>& labels,
-                                   const ClipFilter& filter, const BootstrapOptions& bootstrap,
-                                   const Monitor& monitor = {});
+                                   const PromptSearchOptions& options, const Monitor& monitor = {});
 
 void to_json(nlohmann::json& json, const PromptFigures& figures);
 

@@ -86,23 +86,26 @@ void run_evaluate_search(const EvaluateSearchCommand& command, Program& program)
     const db::Database database(command.files.database_path(), db::OpenMode::read_only);
     for (db::Clip& clip : database.clips()) labels[clip.id] = std::move(clip.labels);
   }
-  evaluation::BootstrapOptions bootstrap;
-  if (command.resamples) bootstrap.resamples = *command.resamples;
-  const auto measure = [&](int resamples) {
-    evaluation::BootstrapOptions options = bootstrap;
-    options.resamples = resamples;
+  evaluation::PromptSearchOptions options;
+  options.filter = command.filter.filter();
+  const auto measure = [&] {
     const search::MotionSearch motion_search(retriever,
                                              std::make_shared<const search::WordModel>(words),
                                              command.files.database_path(), command.files.index);
-    return evaluation::measure_prompt_search(motion_search, prompts, labels,
-                                             command.filter.filter(), options, program.monitor());
+    return evaluation::measure_prompt_search(motion_search, prompts, labels, options,
+                                             program.monitor());
   };
+  options.bootstrap.resamples = 0;
+  options.each_part = false;
   if (command.fit) {
     for (int round = 0; round < kFits; ++round) {
-      words.score = search::fit_word_score(measure(0).pairs);
+      words.score = search::fit_word_score(measure().pairs);
     }
   }
-  const evaluation::PromptReport report = measure(bootstrap.resamples);
+  options.each_part = true;
+  options.bootstrap.resamples =
+      command.resamples.value_or(evaluation::BootstrapOptions().resamples);
+  const evaluation::PromptReport report = measure();
   program.finish_progress();
   if (command.fit) search::store_word_score(text_path, *words.score);
   if (program.json) return program.print_json(report_json(command, report));

@@ -9,7 +9,13 @@
 namespace remomask {
 namespace {
 
-// Takes away what version 4 added.
+// Takes away what version 5 added.
+constexpr const char* kDowngradeTo4 = R"sql(
+DROP TABLE caption_vector;
+PRAGMA user_version = 4;
+)sql";
+
+// And version 4.
 constexpr const char* kDowngradeTo3 = R"sql(
 ALTER TABLE clip DROP COLUMN checksum;
 ALTER TABLE motion DROP COLUMN checksum;
@@ -58,7 +64,8 @@ class UpgradeTest : public testing::Test {
   }
 
   void downgrade(int version) {
-    run_sql(path_, kDowngradeTo3);
+    run_sql(path_, kDowngradeTo4);
+    if (version <= 3) run_sql(path_, kDowngradeTo3);
     if (version <= 2) run_sql(path_, kDowngradeTo2);
     if (version == 1) run_sql(path_, kDowngradeTo1);
   }
@@ -156,10 +163,10 @@ TEST_F(UpgradeTest, CommandReportsAndGivesPagesBack) {
   run_sql(path_, "CREATE TABLE t (x); INSERT INTO t VALUES (zeroblob(1000000)); DROP TABLE t");
   const db::UpgradeReport first = db::upgrade_database(path_);
   EXPECT_EQ(first.version_before, 1);
-  EXPECT_EQ(first.version, 4);
+  EXPECT_EQ(first.version, 5);
   EXPECT_LT(first.bytes + 900000, first.bytes_before);
   const db::UpgradeReport second = db::upgrade_database(path_);
-  EXPECT_EQ(second.version_before, 4);
+  EXPECT_EQ(second.version_before, 5);
   const db::Database database(path_, db::OpenMode::read_only);
   EXPECT_EQ(describe_database(database), before_);
   EXPECT_EQ(database.generation(), generation_);

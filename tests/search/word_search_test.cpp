@@ -205,8 +205,9 @@ TEST_F(WordSearchTest, FollowsChangesAndAsksForMissingVectors) {
   EXPECT_LT(*search.search(query).hits.front().probability, 0.5);
   {
     db::Database database(copy, db::OpenMode::read_write);
-    database.update_clip(*database.find_name("dumb"),
-                         {.captions = std::vector<std::string>{"someone juggles balls."}});
+    db::ClipChanges changes;
+    changes.captions = {"someone juggles balls."};
+    database.update_clip(*database.find_name("dumb"), changes);
     EXPECT_EQ(search::embed_captions(database, *(*words_)->encoder), 1);
     EXPECT_EQ(search::embed_captions(database, *(*words_)->encoder), 0);
   }
