@@ -47,6 +47,19 @@ std::string quote_caption_words(const std::string& text) {
   return query;
 }
 
+std::vector<int64_t> Database::clips_with_words(const std::string& fts_query) const {
+  SqliteStatement rows(
+      impl_->connection,
+      "SELECT rowid FROM caption_words WHERE caption_words MATCH ? ORDER BY rowid");
+  rows.bind(1, fts_query);
+  std::vector<int64_t> ids;
+  while (rows.step()) {
+    const int64_t id = rows.integer(0) / kCaptionsOfClip;
+    if (ids.empty() || ids.back() != id) ids.push_back(id);
+  }
+  return ids;
+}
+
 bool Database::clip_has_words(int64_t clip_id, const std::string& fts_query) const {
   SqliteStatement row(impl_->connection,
                       "SELECT 1 FROM caption_words WHERE caption_words MATCH ? AND rowid BETWEEN "

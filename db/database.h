@@ -108,6 +108,8 @@ class Database {
   /// then by id; negative `limit`: all. Throws Error for an invalid query.
   std::vector<CaptionMatch> match_captions(const std::string& fts_query, int limit = -1) const;
 
+  /// Ids of the clips whose captions answer such a query, ascending, without their scores.
+  std::vector<int64_t> clips_with_words(const std::string& fts_query) const;
   /// Whether a caption of this clip answers such a query.
   bool clip_has_words(int64_t clip_id, const std::string& fts_query) const;
 

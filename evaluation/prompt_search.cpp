@@ -8,7 +8,6 @@
 #include "base/random.h"
 #include "db/clip_filter.h"
 #include "remomask/error.h"
-#include "search/coverage.h"
 #include "search/word_ranking.h"
 #include "text/encoding.h"
 
@@ -98,7 +97,6 @@ class Measurement {
   void add_pairs(const SearchPrompt& prompt, const SearchAnswer& answer,
                  PromptReport& report) const {
     const unsigned sides = search::named_sides(prompt.prompt);
-    const double uncovered = search::uncovered_share(answer.words);
     for (const MotionHit& hit : answer.hits) {
       if (!hit.parts || !hit.probability) continue;
       search::JudgedFeatures pair;
@@ -108,7 +106,7 @@ class Measurement {
       pair.features.mean = parts.mean.value_or(0);
       pair.features.words = parts.words;
       pair.features.motion = parts.motion;
-      pair.features.uncovered = uncovered;
+      pair.features.share = parts.share;
       const unsigned named = search::named_sides(parts.caption);
       pair.features.other_side =
           !hit.as_mirrored && named != 0 && sides != 0 && (named & sides) == 0;

@@ -98,6 +98,7 @@ json hit_document(const MotionHit& hit) {
              {"best", optional_json(hit.parts->best)},
              {"mean", optional_json(hit.parts->mean)},
              {"words", hit.parts->words},
+             {"share", hit.parts->share},
              {"motion", optional_json(hit.parts->motion)}};
   }
   return {{"rank", hit.rank},

@@ -51,12 +51,6 @@ bool is_function_word(const std::string& word) {
   return words.contains(word);
 }
 
-double uncovered_share(const std::vector<QueryWord>& words) {
-  double sum = 0;
-  for (const QueryWord& word : words) sum += 1 - word.covered;
-  return words.empty() ? 0 : sum / static_cast<double>(words.size());
-}
-
 std::vector<QueryWord> covered_words(const encoders::SentenceEncoder& encoder,
                                      const CoverageQuestion& question) {
   std::vector<QueryWord> result;

@@ -25,9 +25,6 @@ struct CoverageQuestion {
   std::function<bool(const std::string& word)> in_captions;
 };
 
-/// Mean of 1 - covered over the words; 0 without any.
-double uncovered_share(const std::vector<QueryWord>& words);
-
 /// For each content word of the sentence the probability that the captions say it. A word that
 /// stands in them is covered; another one is as covered as the highest cosine of its state in the
 /// encoder's last layer with the state of a word there says (words that are there: 0.65 to 0.97;

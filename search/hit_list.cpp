@@ -148,8 +148,7 @@ SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
 }
 
 SearchAnswer collect_ranked(const SearchScene& scene, const SearchQuery& query,
-                            const std::vector<RankedClip>& ranked, const WordScore& score,
-                            double uncovered) {
+                            const std::vector<RankedClip>& ranked) {
   HitList list(scene, query);
   for (const RankedClip& clip : ranked) {
     if (list.full()) break;
@@ -158,11 +157,7 @@ SearchAnswer collect_ranked(const SearchScene& scene, const SearchQuery& query,
     hit.similarity = static_cast<float>(query.by == SearchBy::captions ? parts.best.value_or(-1)
                                         : query.by == SearchBy::words  ? parts.words
                                                                        : parts.motion.value_or(-1));
-    if (query.by == SearchBy::all) {
-      WordFeatures features = clip.features;
-      features.uncovered = uncovered;
-      hit.probability = score.probability(features);
-    }
+    if (query.by == SearchBy::all) hit.probability = clip.probability;
     hit.as_mirrored = clip.as_mirrored;
     hit.parts = parts;
     list.add(clip.clip_id, std::move(hit));

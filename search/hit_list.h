@@ -15,10 +15,8 @@ namespace remomask::search {
 SearchAnswer collect_hits(const SearchScene& scene, const SearchQuery& query,
                           const index::LinearQuery& vectors);
 
-/// The same of a sentence, from the ranking of the clips; `uncovered` of the sentence goes into the
-/// probabilities.
+/// The same of a sentence, from the ranking of the clips.
 SearchAnswer collect_ranked(const SearchScene& scene, const SearchQuery& query,
-                            const std::vector<RankedClip>& ranked, const WordScore& score,
-                            double uncovered);
+                            const std::vector<RankedClip>& ranked);
 
 }  // namespace remomask::search

@@ -47,8 +47,7 @@ class VariantRanking {
       one.features.captions = true;
       one.features.best = match.best;
       one.features.mean = match.mean;
-      const auto words = words_.find(clips[place].id);
-      if (words != words_.end()) one.features.words = words->second;
+      add_words(clips[place].id, one.features);
       found.push_back(one);
     }
     return found;
@@ -92,8 +91,9 @@ class VariantRanking {
       features.other_side = sides != 0 && sides_ != 0 && (sides & sides_) == 0;
     }
     result.parts.words = features.words;
+    result.parts.share = features.share;
     result.parts.motion = features.motion;
-    result.features = features;
+    result.probability = score_.probability(features);
     result.score = by == SearchBy::captions ? features.best
                    : by == SearchBy::words  ? features.words
                                             : score_.logit(features);
@@ -111,6 +111,13 @@ class VariantRanking {
     return !limit || std::binary_search(limit->begin(), limit->end(), id);
   }
 
+  void add_words(int64_t id, WordFeatures& features) const {
+    const auto words = words_.find(id);
+    if (words != words_.end()) features.words = words->second;
+    const auto share = variant_.shares.find(id);
+    if (share != variant_.shares.end()) features.share = share->second;
+  }
+
   Scored unworded(int64_t id) const {
     const db::Clip& clip = scene_.state->clip(id);
     const auto place = static_cast<size_t>(&clip - scene_.state->clips.data());
@@ -119,8 +126,7 @@ class VariantRanking {
     if (one.features.captions) {
       one.features.best = matches_[place].best;
       one.features.mean = matches_[place].mean;
-      const auto words = words_.find(id);
-      if (words != words_.end()) one.features.words = words->second;
+      add_words(id, one.features);
     }
     return one;
   }

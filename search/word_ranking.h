@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "remomask/search.h"
@@ -13,10 +14,11 @@ namespace remomask::search {
 /// A sentence, or its mirror image, with all that it is compared by.
 struct WordVariant {
   std::string text;
-  bool mirrored = false;                  ///< the sentence with left and right exchanged
-  std::vector<float> caption_query;       ///< vector of the sentence encoder
-  std::vector<float> motion_query;        ///< vector of the retriever [E]
-  std::vector<db::CaptionMatch> matches;  ///< clips with its words, best first
+  bool mirrored = false;                       ///< the sentence with left and right exchanged
+  std::vector<float> caption_query;            ///< vector of the sentence encoder
+  std::vector<float> motion_query;             ///< vector of the retriever [E]
+  std::vector<db::CaptionMatch> matches;       ///< clips with its words, best first
+  std::unordered_map<int64_t, double> shares;  ///< clip -> WordFeatures::share
 };
 
 /// A clip that answers a sentence.
@@ -24,7 +26,7 @@ struct RankedClip {
   int64_t clip_id = 0;
   bool as_mirrored = false;
   double score = 0;  ///< what the ranking is by: log-odds, cosine or share of the best BM25
-  WordFeatures features;
+  double probability = 0;
   WordParts parts;
 };
 

@@ -72,7 +72,7 @@ double WordScore::logit(const WordFeatures& features) const {
   const double cosine = features.motion.value_or(0);
   if (!features.captions) return motion_only_bias + motion_only * cosine;
   return bias + best * features.best + mean * features.mean + words * features.words +
-         (features.other_side ? other_side : 0) + motion * cosine + uncovered * features.uncovered;
+         (features.other_side ? other_side : 0) + motion * cosine + share * features.share;
 }
 
 double WordScore::probability(const WordFeatures& features) const {
@@ -90,7 +90,7 @@ WordScore fit_word_score(const std::vector<JudgedFeatures>& pairs, double ridge)
     const auto row = static_cast<Eigen::Index>(i);
     const WordFeatures& one = pairs[i].features;
     const double cosine = one.motion.value_or(0);
-    worded.rows.row(row) << 1, one.best, one.mean, one.words, cosine, -one.uncovered;
+    worded.rows.row(row) << 1, one.best, one.mean, one.words, cosine, one.share;
     moving.rows.row(row) << 1, cosine;
     if (one.other_side) worded.offset(row) = kOtherSide;
     worded.right(row) = moving.right(row) = pairs[i].right ? 1 : 0;
@@ -106,7 +106,7 @@ WordScore fit_word_score(const std::vector<JudgedFeatures>& pairs, double ridge)
   score.mean = with(2);
   score.words = with(3);
   score.motion = with(4);
-  score.uncovered = -with(5);
+  score.share = with(5);
   score.other_side = kOtherSide;
   score.motion_only_bias = without(0);
   score.motion_only = without(1);

@@ -8,11 +8,13 @@ namespace remomask::search {
 
 /// What is known of a sentence and one clip.
 struct WordFeatures {
-  bool captions = false;         ///< the clip has captions; without, only `motion` counts
-  double best = 0;               ///< highest cosine of the sentence and a caption
-  double mean = 0;               ///< mean cosine over the captions
-  double words = 0;              ///< BM25 of the best caption, divided by the highest of all clips
-  double uncovered = 0;          ///< of the sentence: mean over its content words of 1 - covered
+  bool captions = false;  ///< the clip has captions; without, only `motion` counts
+  double best = 0;        ///< highest cosine of the sentence and a caption
+  double mean = 0;        ///< mean cosine over the captions
+  double words = 0;       ///< BM25 of the best caption, divided by the highest of all clips
+  /// Share of the sentence's content words that stand in the captions, each by its weight
+  /// ln(1 + clips / clips with it): a word that no clip has weighs most.
+  double share = 0;
   bool other_side = false;       ///< the sentence says left, the caption right, or the reverse
   std::optional<double> motion;  ///< cosine of sentence and motion; none: not embedded
 };
@@ -20,15 +22,15 @@ struct WordFeatures {
 /// The probability that a clip shows what a sentence asks for: a logistic regression on the
 /// features, one for clips with captions and one for those without.
 struct WordScore {
-  double bias = 0, best = 0, mean = 0, words = 0, other_side = 0, motion = 0, uncovered = 0;
+  double bias = 0, best = 0, mean = 0, words = 0, other_side = 0, motion = 0, share = 0;
   double motion_only_bias = 0, motion_only = 0;
 
   /// The log-odds. A motion that is not embedded counts as one of cosine 0.
   double logit(const WordFeatures& features) const;
   double probability(const WordFeatures& features) const;
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WordScore, bias, best, mean, words, other_side, motion,
-                                   uncovered, motion_only_bias, motion_only)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WordScore, bias, best, mean, words, other_side, motion, share,
+                                   motion_only_bias, motion_only)
 
 /// A hit whose rightness is known.
 struct JudgedFeatures {
@@ -38,9 +40,9 @@ struct JudgedFeatures {
 };
 
 /// Maximum likelihood with a penalty of `ridge` / 2 per squared weight (Newton's method), both
-/// regressions from the same pairs. Weights of best, mean, words and motion are kept from falling
-/// below 0, that of uncovered from rising above it: a clip must not become less probable by
-/// resembling the sentence more. That of other_side is -6. Throws Error for fewer than 20 pairs or
+/// regressions from the same pairs. Weights of best, mean, words, share and motion are kept from
+/// falling below 0: a clip must not become less probable by resembling the sentence more. That of
+/// other_side is -6. Throws Error for fewer than 20 pairs or
 /// pairs that are all right or all wrong.
 WordScore fit_word_score(const std::vector<JudgedFeatures>& pairs, double ridge = 1e-2);
 

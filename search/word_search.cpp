@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <sstream>
+#include <cmath>
 
 #include "db/captions_index.h"
 #include "remomask/error.h"
@@ -18,15 +21,32 @@ namespace {
 constexpr size_t kCoverageCaptions = 24;  // nearest captions whose words are compared
 constexpr size_t kCoverageClips = 24;     // best clips in whose captions a word may stand
 
-/// An FTS5 query for any of the content words; empty for a sentence without one.
-std::string any_content_word(const std::string& sentence) {
-  std::string any;
+/// The content words, each once, as FTS5 queries.
+std::vector<std::string> content_words(const std::string& sentence) {
+  std::vector<std::string> quoted;
   for (const std::string& word : text::split_words(text::normalise_caption(sentence))) {
-    const std::string quoted = db::quote_caption_words(word);
-    if (quoted.empty() || is_function_word(word)) continue;
-    any += (any.empty() ? "" : " OR ") + quoted;
+    std::string one = is_function_word(word) ? "" : db::quote_caption_words(word);
+    if (one.empty() || std::find(quoted.begin(), quoted.end(), one) != quoted.end()) continue;
+    quoted.push_back(std::move(one));
   }
-  return any;
+  return quoted;
+}
+
+/// WordFeatures::share of each clip with a word.
+std::unordered_map<int64_t, double> word_shares(const db::Database& database, size_t clips,
+                                                const std::vector<std::string>& words) {
+  constexpr double kOfNone = 0.5;  // clips that a word which no clip has counts for
+  std::unordered_map<int64_t, double> shares;
+  double sum = 0;
+  for (const std::string& word : words) {
+    const std::vector<int64_t> with = database.clips_with_words(word);
+    const double count = with.empty() ? kOfNone : static_cast<double>(with.size());
+    const double weight = std::log1p(static_cast<double>(clips) / count);
+    sum += weight;
+    for (const int64_t id : with) shares[id] += weight;
+  }
+  for (auto& [id, share] : shares) share /= sum;
+  return shares;
 }
 
 std::unordered_map<std::string, int> caption_vocabulary(const std::vector<db::Clip>& clips) {
@@ -89,8 +109,10 @@ WordedQuery MotionSearch::Impl::worded_query(const SearchQuery& query,
   for (WordVariant& variant : worded.variants) {
     variant.caption_query = words->encoder->embed({variant.text}).front();
     if (query.by == SearchBy::all) variant.motion_query = text_vector(variant.text);
-    const std::string any = any_content_word(variant.text);
-    if (!any.empty()) variant.matches = database.match_captions(any);
+    const std::vector<std::string> content = content_words(variant.text);
+    if (content.empty()) continue;
+    variant.matches = database.match_captions(fmt::format("{}", fmt::join(content, " OR ")));
+    variant.shares = word_shares(database, state->clips.size(), content);
   }
   return worded;
 }
@@ -134,9 +156,8 @@ SearchAnswer MotionSearch::Impl::search_words(const SearchQuery& query) const {
   const WordedQuery worded = worded_query(query, sentence);
   const WordScore score = words->score.value_or(WordScore());
   const std::vector<RankedClip> ranked = rank_clips(scene, worded.variants, score, query.by);
-  const std::vector<QueryWord> covered = coverage(worded, scene, ranked);
-  SearchAnswer answer = collect_ranked(scene, query, ranked, score, uncovered_share(covered));
-  answer.words = covered;
+  SearchAnswer answer = collect_ranked(scene, query, ranked);
+  answer.words = coverage(worded, scene, ranked);
   answer.corrected = worded.sentence.corrected;
   if (!answer.corrected.empty()) answer.sentence = worded.sentence.text;
   return answer;

@@ -13,7 +13,7 @@ namespace remomask::tools {
 namespace {
 
 // What a first fit starts from, when the text file has no score yet.
-constexpr search::WordScore kFirstScore{-9, 8, 4, 1.5, -6, 0, -1, -8, 8};
+constexpr search::WordScore kFirstScore{-9, 8, 4, 1.5, -6, 0, 1, -8, 8};
 constexpr int kFits = 3;  // a better score finds other hits
 
 void print_figures(const evaluation::PromptReport& report) {

@@ -89,6 +89,7 @@ struct WordParts {
   std::optional<double> best;    ///< cosine of the sentence and that caption
   std::optional<double> mean;    ///< mean cosine over the captions
   double words = 0;              ///< BM25, divided by that of the clip with the best; 0: no word
+  double share = 0;              ///< of the sentence's words, by weight, that its captions have
   std::optional<double> motion;  ///< cosine of the sentence and the motion, by the retriever
 };
 

@@ -45,8 +45,6 @@ TEST(SpellingTest, KnowsFunctionWordsAndSides) {
   EXPECT_EQ(search::named_sides("turns clockwise"), 2u);
   EXPECT_EQ(search::named_sides("left, then right"), 3u);
   EXPECT_EQ(search::named_sides("walks"), 0u);
-  EXPECT_EQ(search::uncovered_share({}), 0);
-  EXPECT_DOUBLE_EQ(search::uncovered_share({{"a", 1, true}, {"b", 0.5, false}}), 0.25);
 }
 
 }  // namespace
