@@ -159,7 +159,8 @@ struct Generator::Impl {
                                              const RetrievedMotion** hit) const {
     std::vector<DraftCandidate> candidates;
     for (const RetrievedMotion& found : hits) {
-      candidates.push_back({found.similarity, found.poses ? found.poses->frames : 0});
+      candidates.push_back(
+          {found.probability.value_or(found.similarity), found.poses ? found.poses->frames : 0});
     }
     const auto chosen =
         choose_draft(candidates, static_cast<int>(frames * kFramesPerToken), options.seed);

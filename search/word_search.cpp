@@ -103,9 +103,12 @@ WordedQuery MotionSearch::Impl::worded_query(const SearchQuery& query,
   WordedQuery worded;
   worded.sentence = spelled(sentence.text);
   const std::string text = text::normalise_prompt(worded.sentence.text);
-  worded.variants.push_back({text, false, {}, {}, {}});
+  worded.variants.emplace_back().text = text;
   const std::string mirrored = text::mirror_caption(text);
-  if (mirrored != text && query.mirror) worded.variants.push_back({mirrored, true, {}, {}, {}});
+  if (mirrored != text && query.mirror) {
+    worded.variants.emplace_back().text = mirrored;
+    worded.variants.back().mirrored = true;
+  }
   for (WordVariant& variant : worded.variants) {
     variant.caption_query = words->encoder->embed({variant.text}).front();
     if (query.by == SearchBy::all) variant.motion_query = text_vector(variant.text);

@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     query.k = 1;
     query.filter.tags = {"new"};
     for (const remomask::MotionHit& hit : remomask.search(query).hits) {
-      std::printf("found: %s  %.3f\n", hit.clip.name.c_str(), hit.similarity);
+      std::printf("found: %s  %.3f\n", hit.clip.name.c_str(), *hit.probability);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

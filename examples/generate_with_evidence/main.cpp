@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     const remomask::GeneratedMotion made = remomask.generate(argv[1], options);
     for (const remomask::Evidence& found : made.evidence) {
       std::printf("%-16s %.3f  %s (%s)", remomask::evidence_use_name(found.use),
-                  found.hit.similarity, found.hit.clip.name.c_str(),
+                  *found.hit.probability, found.hit.clip.name.c_str(),
                   found.hit.clip.licence.c_str());
       if (found.influence) std::printf("  decides %.0f %%", 100 * *found.influence);
       if (found.followed_share > 0) std::printf("  followed %.0f %%", 100 * found.followed_share);

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     query.filter.min_seconds = 2;
     const remomask::SearchAnswer answer = remomask.search(query);
     for (const remomask::MotionHit& hit : answer.hits) {
-      std::printf("%d. %s  %.3f  %s\n", hit.rank, hit.clip.name.c_str(), hit.similarity,
+      std::printf("%d. %s  %.3f  %s\n", hit.rank, hit.clip.name.c_str(), *hit.probability,
                   hit.clip.captions.empty() ? "" : hit.clip.captions.front().c_str());
     }
     std::printf("%lld clips pass the filter\n", static_cast<long long>(answer.candidates));

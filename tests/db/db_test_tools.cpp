@@ -1,5 +1,4 @@
 #include "tests/db/db_test_tools.h"
-#include "motion/vector.h"
 
 #include <sqlite3.h>
 #include <stdlib.h>
@@ -7,14 +6,9 @@
 #include <cmath>
 
 #include "motion/canonical.h"
+#include "motion/vector.h"
 
 namespace remomask {
-
-TestFolder::TestFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "remomask_db_XXXXXX").string();
-  if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
-  path_ = name;
-}
 
 Motion walking_motion(int frames, int seed) {
   const Skeleton& skeleton = humanml_skeleton();

@@ -8,22 +8,9 @@
 #include "db/database.h"
 #include "remomask/error.h"
 #include "remomask/motion.h"
+#include "tests/base/test_folder.h"
 
 namespace remomask {
-
-/// A folder of its own for one test, removed afterwards.
-class TestFolder {
- public:
-  TestFolder();
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A standing body that walks and swings its arms, different for every seed:
 /// canonical, 22 joints.
