@@ -5,6 +5,10 @@ function(remomask_flags target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # False alarms of GCC 12 on std::string concatenation (GCC bug 105329).
     target_compile_options(${target} PRIVATE -Wno-restrict)
+    if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
+      # And of later ones on std::vector<bool>, as torch::autograd::Function uses it.
+      target_compile_options(${target} PRIVATE -Wno-array-bounds)
+    endif()
   endif()
   if(REMOMASK_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
