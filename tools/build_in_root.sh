@@ -69,6 +69,5 @@ fi
 if [ $# = 0 ]; then
   set -- tools/test.sh
 fi
-printf -v command '%q ' "$@"
 env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 ${JOBS:+JOBS="$JOBS"} \
-  chroot "$folder" /bin/sh -c "cd $start && exec $command"
+  chroot "$folder" /bin/sh -c 'cd "$0" && exec "$@"' "$start" "$@"

@@ -26,7 +26,7 @@ check_format() {
 sanitize() {
   cmake --preset asan >/dev/null
   cmake --build build/asan -j "${JOBS:-$(nproc)}" --target base_tests motion_tests db_tests
-  ctest --test-dir build/asan -R '^(base|motion|db)$' --output-on-failure --timeout 1800
+  ctest --test-dir build/asan -R '^(base|motion|db)$' --parallel "${JOBS:-$(nproc)}" --output-on-failure --timeout 1800
 }
 
 step packages tools/install_debian.sh --checks
@@ -40,6 +40,7 @@ if command -v clang-format-14 >/dev/null && command -v clang-tidy-14 >/dev/null;
 fi
 # With the benchmarks, which add a sixteenth to the compile time and break unseen otherwise.
 step build tools/build.sh tests -DREMOMASK_WERROR=ON
-step tests ctest --test-dir build/release --output-on-failure --timeout 1800
+# Most tests run one process of one thread after another.
+step tests ctest --test-dir build/release --parallel "${JOBS:-$(nproc)}" --output-on-failure --timeout 1800
 step sanitizers sanitize
 echo "all steps: $((SECONDS - begin)) s"
