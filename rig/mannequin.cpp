@@ -3,13 +3,34 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/body_joints.h"
-
 namespace remomask::rig {
 
 namespace {
 
-using enum motion::BodyJoint;
+enum BodyJoint {
+  kBodyPelvis,
+  kBodyLeftHip,
+  kBodyRightHip,
+  kBodySpine1,
+  kBodyLeftKnee,
+  kBodyRightKnee,
+  kBodySpine2,
+  kBodyLeftAnkle,
+  kBodyRightAnkle,
+  kBodySpine3,
+  kBodyLeftToe,
+  kBodyRightToe,
+  kBodyNeck,
+  kBodyLeftCollar,
+  kBodyRightCollar,
+  kBodyHead,
+  kBodyLeftShoulder,
+  kBodyRightShoulder,
+  kBodyLeftElbow,
+  kBodyRightElbow,
+  kBodyLeftWrist,
+  kBodyRightWrist
+};
 
 /// How much two joints move a ring: `share` of it goes to the second.
 struct Hold {
@@ -188,8 +209,8 @@ void sculpt_foot(Sculptor& sculptor, const std::vector<Vec3>& rest, bool left, d
                 Vec3(0, height / 2, 0), hold};
   };
   const Hold foot{ankle, ankle, 0}, both{ankle, toe, 0.5}, toes{toe, toe, 0};
-  std::vector<Ring> rings = {ring(-0.052 * size, 0.035 * size, 0.022 * size, foot),
-                             ring(-0.042 * size, 0.065 * size, 0.034 * size, foot),
+  std::vector<Ring> rings = {ring(-0.062 * size, 0.035 * size, 0.022 * size, foot),
+                             ring(-0.05 * size, 0.065 * size, 0.034 * size, foot),
                              ring(0, instep, 0.04 * size, foot),
                              ring(0.5 * ball, 0.75 * instep, 0.042 * size, foot),
                              ring(ball, 0.05 * size, 0.05 * size, both),
