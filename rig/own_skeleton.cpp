@@ -39,7 +39,8 @@ std::optional<SkeletonMap> own_skeleton_map(const SkeletonView& skeleton) {
                      skeleton.find_joint(preset->root) >= 0;
   if (!preset || (!exact && !has_our_limbs(skeleton, *preset))) return std::nullopt;
   SkeletonMap map;
-  map.name = "remomask";
+  // What another program has written anew may begin with a rest pose; a file of ours does not.
+  map.name = exact ? "remomask" : "remomask_names";
   for (size_t j = 0; j < map.points.size(); ++j) map.points[j].from = preset->joints[j];
   return map;
 }

@@ -47,7 +47,7 @@ done
 try node "$cache/scripts/gltf_validate.mjs" glb/*.glb vrma/*.vrma
 
 number=0
-for sentence in "a person walks forward and turns around" "a person does jumping jacks"; do
+for sentence in "a person walks forward and turns around" "a person sits down on a chair"; do
   number=$((number + 1))
   made="generated$number"
   for file in $made.npy $made.bvh $made.glb $made.vrma; do

@@ -132,7 +132,6 @@ std::vector<RigNames> make_rigs() {
       mixamo("Mixamo without its colon", "mixamorig"),
       mixamo("Perception Neuron", "Robot_"),
       mixamo("HumanIK", "Character1_"),
-      mixamo("iClone, renamed", "RL_"),
       mixamo("a name space of two levels", "Armature|Hero:"),
       smpl("SMPL", "Pelvis", "", true),
       smpl("SMPL, lower case", "pelvis", "", false),
@@ -146,6 +145,7 @@ std::vector<RigNames> make_rigs() {
       rigify("Rigify, deforming bones", "DEF-", true),
       rigify("Rigify, original bones", "ORG-", false),
       rigify("Rigify, metarig", "", false),
+      mixamo("iClone, renamed", "RL_"),
   };
   RigNames smplx = smpl("SMPL-X", "pelvis", "", false);
   smplx.others = {"jaw<head", "{left|right}_eye_smplhf<head",
