@@ -62,12 +62,13 @@ void add_result_options(CLI::App& command, SearchCommand& options) {
 
 void register_search(CLI::App& app, Program& program) {
   auto options = std::make_shared<SearchCommand>();
-  CLI::App* command = add_command(app, "search", "find motions by meaning or by example",
-                                  "remomask search \"someone climbs a ladder\" -k 5 --min-seconds 2\n"
-                                  "  remomask search \"a boxer\" --label actions=punch\n"
-                                  "  remomask search \"a person walks -backward\"\n"
-                                  "  remomask search --like walk.bvh --parts arms\n"
-                                  "  remomask search --like walk.bvh --captions");
+  CLI::App* command =
+      add_command(app, "search", "find motions by meaning or by example",
+                  "remomask search \"someone climbs a ladder\" -k 5 --min-seconds 2\n"
+                  "  remomask search \"a boxer\" --label actions=punch\n"
+                  "  remomask search \"a person walks -backward\"\n"
+                  "  remomask search --like walk.bvh --parts arms\n"
+                  "  remomask search --like walk.bvh --captions");
   add_query_options(*command, *options);
   options->files.add_database(*command);
   options->files.add_model(*command);

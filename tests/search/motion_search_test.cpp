@@ -1,5 +1,5 @@
-// With the shipped retriever and a database of random vectors, where the right
-// answer is a sum over all clips; and with the shipped database.
+// With the shipped retriever and random vectors, where the right answer is a sum over all clips;
+// and with the shipped database.
 #include "search/motion_search.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ namespace {
 const std::string kModels = REMOMASK_SOURCE_DIR "/models/";
 const std::string kModel = kModels + "base.safetensors";
 
-/// These tests are of the comparison with motions; tests/search/word_search_test.cpp has the rest.
+// Search by words is in word_search_test.cpp.
 struct MotionQuery : SearchQuery {
   MotionQuery() { by = SearchBy::motion; }
 };
