@@ -117,6 +117,16 @@ class Measurement {
     }
   }
 
+  void add_motion_pairs(const SearchPrompt& prompt, const SearchAnswer& answer,
+                        PromptReport& report) const {
+    for (const MotionHit& hit : answer.hits) {
+      search::JudgedFeatures pair;
+      pair.features.motion = hit.similarity;
+      pair.right = is_right(prompt, hit.clip.id);
+      report.motion_pairs.push_back(pair);
+    }
+  }
+
  private:
   const search::MotionSearch& search_;
   const std::map<int64_t, nlohmann::json>& labels_;
@@ -174,9 +184,8 @@ PromptReport measure_prompt_search(const search::MotionSearch& search,
                                    const PromptSearchOptions& options, const Monitor& monitor) {
   const Measurement measurement(search, labels, options.filter);
   std::vector<SearchBy> ways = {SearchBy::all};
-  if (options.each_part) {
-    ways.insert(ways.end(), {SearchBy::captions, SearchBy::words, SearchBy::motion});
-  }
+  if (options.each_part) ways.insert(ways.end(), {SearchBy::captions, SearchBy::words});
+  ways.push_back(SearchBy::motion);
   std::map<SearchBy, FirstRanks> ranks;
   FirstRanks random;
   PromptReport report;
@@ -186,8 +195,12 @@ PromptReport measure_prompt_search(const search::MotionSearch& search,
     const SearchPrompt& prompt = prompts[i];
     const bool answerable = !prompt.labels.empty();
     for (const SearchBy by : ways) {
-      if (by != SearchBy::all && !answerable) continue;
+      if (by != SearchBy::all && by != SearchBy::motion && !answerable) continue;
       const SearchAnswer answer = measurement.answer(prompt, by);
+      if (by == SearchBy::motion) {
+        measurement.add_motion_pairs(prompt, answer, report);
+        if (!answerable) continue;
+      }
       if (by == SearchBy::all) {
         measurement.add_pairs(prompt, answer, report);
         const bool trusted =

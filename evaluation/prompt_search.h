@@ -41,8 +41,9 @@ struct PromptFigures {
 
 struct PromptReport {
   std::vector<PromptFigures> figures;
-  std::vector<search::JudgedFeatures> pairs;  ///< the first ten hits of every prompt, by all
-  std::vector<double> probabilities;          ///< of these pairs
+  std::vector<search::JudgedFeatures> pairs;         ///< the first ten hits of every prompt, by all
+  std::vector<search::JudgedFeatures> motion_pairs;  ///< the same by motion
+  std::vector<double> probabilities;                 ///< of these pairs
   std::vector<bool> right;
   std::vector<search::ReliabilityBin> bins;
   double calibration_error = 0;
@@ -56,7 +57,7 @@ struct PromptReport {
 
 struct PromptSearchOptions {
   ClipFilter filter;
-  bool each_part = true;  ///< false: by everything alone
+  bool each_part = true;  ///< false: by everything and by motion alone, what a fit needs
   BootstrapOptions bootstrap;
 };
 

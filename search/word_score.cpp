@@ -59,12 +59,29 @@ Eigen::VectorXd logistic_regression(const Eigen::MatrixXd& rows, const Eigen::Ve
 struct Regression {
   Eigen::MatrixXd rows;
   Eigen::VectorXd right, weight, offset;
-  explicit Regression(size_t count, Eigen::Index width)
-      : rows(static_cast<Eigen::Index>(count), width),
+
+  Regression(const std::vector<JudgedFeatures>& pairs, Eigen::Index width)
+      : rows(static_cast<Eigen::Index>(pairs.size()), width),
         right(rows.rows()),
         weight(rows.rows()),
-        offset(Eigen::VectorXd::Zero(rows.rows())) {}
+        offset(Eigen::VectorXd::Zero(rows.rows())) {
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      right(static_cast<Eigen::Index>(i)) = pairs[i].right ? 1 : 0;
+      weight(static_cast<Eigen::Index>(i)) = pairs[i].weight;
+    }
+  }
+  Eigen::VectorXd solve(double ridge) const {
+    return logistic_regression(rows, right, weight, offset, ridge);
+  }
 };
+
+void check_pairs(const std::vector<JudgedFeatures>& pairs) {
+  size_t right = 0;
+  for (const JudgedFeatures& pair : pairs) right += pair.right ? 1 : 0;
+  if (pairs.size() < kMinPairs || right == 0 || right == pairs.size()) {
+    throw Error("a score is fitted to at least 20 hits, some of them right and some wrong");
+  }
+}
 
 }  // namespace
 
@@ -79,37 +96,31 @@ double WordScore::probability(const WordFeatures& features) const {
   return sigmoid(logit(features));
 }
 
-WordScore fit_word_score(const std::vector<JudgedFeatures>& pairs, double ridge) {
-  size_t right = 0;
-  for (const JudgedFeatures& pair : pairs) right += pair.right ? 1 : 0;
-  if (pairs.size() < kMinPairs || right == 0 || right == pairs.size()) {
-    throw Error("a score is fitted to at least 20 hits, some of them right and some wrong");
-  }
-  Regression worded(pairs.size(), 6), moving(pairs.size(), 2);
-  for (size_t i = 0; i < pairs.size(); ++i) {
+WordScore fit_word_score(const std::vector<JudgedFeatures>& worded,
+                         const std::vector<JudgedFeatures>& moving, double ridge) {
+  check_pairs(worded);
+  check_pairs(moving);
+  Regression with(worded, 6), without(moving, 2);
+  for (size_t i = 0; i < worded.size(); ++i) {
+    const WordFeatures& one = worded[i].features;
     const auto row = static_cast<Eigen::Index>(i);
-    const WordFeatures& one = pairs[i].features;
-    const double cosine = one.motion.value_or(0);
-    worded.rows.row(row) << 1, one.best, one.mean, one.words, cosine, one.share;
-    moving.rows.row(row) << 1, cosine;
-    if (one.other_side) worded.offset(row) = kOtherSide;
-    worded.right(row) = moving.right(row) = pairs[i].right ? 1 : 0;
-    worded.weight(row) = moving.weight(row) = pairs[i].weight;
+    with.rows.row(row) << 1, one.best, one.mean, one.words, one.motion.value_or(0), one.share;
+    if (one.other_side) with.offset(row) = kOtherSide;
   }
-  const Eigen::VectorXd with =
-      logistic_regression(worded.rows, worded.right, worded.weight, worded.offset, ridge);
-  const Eigen::VectorXd without =
-      logistic_regression(moving.rows, moving.right, moving.weight, moving.offset, ridge);
+  for (size_t i = 0; i < moving.size(); ++i) {
+    without.rows.row(static_cast<Eigen::Index>(i)) << 1, moving[i].features.motion.value_or(0);
+  }
+  const Eigen::VectorXd weights = with.solve(ridge), motion_weights = without.solve(ridge);
   WordScore score;
-  score.bias = with(0);
-  score.best = with(1);
-  score.mean = with(2);
-  score.words = with(3);
-  score.motion = with(4);
-  score.share = with(5);
+  score.bias = weights(0);
+  score.best = weights(1);
+  score.mean = weights(2);
+  score.words = weights(3);
+  score.motion = weights(4);
+  score.share = weights(5);
   score.other_side = kOtherSide;
-  score.motion_only_bias = without(0);
-  score.motion_only = without(1);
+  score.motion_only_bias = motion_weights(0);
+  score.motion_only = motion_weights(1);
   return score;
 }
 

@@ -39,11 +39,12 @@ struct JudgedFeatures {
   double weight = 1;
 };
 
-/// Maximum likelihood with a penalty of `ridge` / 2 per squared weight (Newton's method), both
-/// regressions from the same pairs. Weights of best, mean, words, share and motion are kept from
-/// falling below 0: a clip must not become less probable by resembling the sentence more. That of
-/// other_side is -6. Throws Error for fewer than 20 pairs or
-/// pairs that are all right or all wrong.
-WordScore fit_word_score(const std::vector<JudgedFeatures>& pairs, double ridge = 1e-2);
+/// Maximum likelihood with a penalty of `ridge` / 2 per squared weight (Newton's method). `worded`
+/// are hits of a search by everything, `moving` those of a search by motion. Weights of best, mean,
+/// words, share and motion are kept from falling below 0: a clip must not become less probable by
+/// resembling the sentence more. That of other_side is -6. Throws Error for fewer than 20 pairs of
+/// a kind, or pairs that are all right or all wrong.
+WordScore fit_word_score(const std::vector<JudgedFeatures>& worded,
+                         const std::vector<JudgedFeatures>& moving, double ridge = 1e-2);
 
 }  // namespace remomask::search

@@ -10,6 +10,7 @@
 #include "search/hit_list.h"
 #include "search/motion_search_impl.h"
 #include "search/query.h"
+#include "search/subject.h"
 #include "text/caption.h"
 #include "text/caption_mirror.h"
 #include "text/wordpiece.h"
@@ -110,7 +111,7 @@ WordedQuery MotionSearch::Impl::worded_query(const SearchQuery& query,
     worded.variants.back().mirrored = true;
   }
   for (WordVariant& variant : worded.variants) {
-    variant.caption_query = words->encoder->embed({variant.text}).front();
+    variant.caption_query = words->encoder->embed({generic_subject(variant.text)}).front();
     if (query.by == SearchBy::all) variant.motion_query = text_vector(variant.text);
     const std::vector<std::string> content = content_words(variant.text);
     if (content.empty()) continue;

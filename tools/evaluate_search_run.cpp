@@ -99,7 +99,8 @@ void run_evaluate_search(const EvaluateSearchCommand& command, Program& program)
   options.each_part = false;
   if (command.fit) {
     for (int round = 0; round < kFits; ++round) {
-      words.score = search::fit_word_score(measure().pairs);
+      const evaluation::PromptReport report = measure();
+      words.score = search::fit_word_score(report.pairs, report.motion_pairs);
     }
   }
   options.each_part = true;

@@ -472,7 +472,7 @@ TEST_F(MotionSearchTest, StoredMotionsAndMomentsOfTheShippedDatabase) {
   query.moments = true;
   EXPECT_NE(error_of([&] { shipped.search(query); }).find("whole body"), std::string::npos);
   query.parts.clear();
-  SearchQuery jump;
+  MotionQuery jump;
   jump.text = "a person jumps";
   jump.moments = true;
   jump.k = 3;

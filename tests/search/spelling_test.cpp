@@ -5,6 +5,7 @@
 #include <set>
 
 #include "search/coverage.h"
+#include "search/subject.h"
 #include "search/word_ranking.h"
 
 namespace remomask {
@@ -36,6 +37,17 @@ TEST(SpellingTest, CorrectsWhatIsNoWord) {
             "plays the violin xyzzy");
   // Short words and words of another first letter are left alone.
   EXPECT_EQ(search::correct_spelling("wlk talks", is_word, vocabulary).text, "wlk talks");
+}
+
+TEST(SpellingTest, WhoMovesIsAPerson) {
+  for (const char* text : {"a girl waves", "the robot  waves", "He waves", "someone waves",
+                           "Bro waves", "a person waves"}) {
+    EXPECT_EQ(search::generic_subject(text), "a person waves") << text;
+  }
+  // No subject, or not before a verb.
+  for (const char* text : {"robot dance", "waves", "the waves", "man", "", "she", "a girl his"}) {
+    EXPECT_EQ(search::generic_subject(text), text);
+  }
 }
 
 TEST(SpellingTest, KnowsFunctionWordsAndSides) {

@@ -55,7 +55,7 @@ TEST(WordScoreTest, TheFitFindsTheWeightsThatMadeThePairs) {
     pair.right = random.uniform() < truth.probability(pair.features);
     pairs.push_back(pair);
   }
-  const search::WordScore fitted = search::fit_word_score(pairs);
+  const search::WordScore fitted = search::fit_word_score(pairs, pairs);
   // best and mean differ by a constant, so that only their sum can be known.
   EXPECT_NEAR(fitted.best + fitted.mean, 6, 0.4);
   EXPECT_NEAR(fitted.words, 3, 0.2);
@@ -74,7 +74,7 @@ TEST(WordScoreTest, NoWeightSaysThatLikenessIsBad) {
     pair.right = i < 50;
     pairs.push_back(pair);
   }
-  const search::WordScore fitted = search::fit_word_score(pairs);
+  const search::WordScore fitted = search::fit_word_score(pairs, pairs);
   EXPECT_EQ(fitted.best, 0);
   EXPECT_EQ(fitted.mean, 0);
   EXPECT_NEAR(fitted.probability(worded(0.9, 0.5)), 0.5, 0.01);
@@ -83,10 +83,10 @@ TEST(WordScoreTest, NoWeightSaysThatLikenessIsBad) {
 TEST(WordScoreTest, RefusesTooFewPairsAndPairsOfOneKind) {
   std::vector<search::JudgedFeatures> pairs(19);
   pairs[0].right = true;
-  EXPECT_THROW(search::fit_word_score(pairs), Error);
+  EXPECT_THROW(search::fit_word_score(pairs, pairs), Error);
   pairs.resize(40);
   pairs[0].right = false;
-  EXPECT_THROW(search::fit_word_score(pairs), Error);
+  EXPECT_THROW(search::fit_word_score(pairs, pairs), Error);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "db/database.h"
+#include "db/snapshot.h"
 #include "index/vector_index.h"
 #include "nn/model_file.h"
 #include "remomask/error.h"
@@ -197,7 +198,7 @@ TEST_F(WordSearchTest, LongAndStrangeTextsAreAnswered) {
 TEST_F(WordSearchTest, FollowsChangesAndAsksForMissingVectors) {
   TestFolder folder;
   const std::string copy = folder / "copy.sqlite";
-  std::filesystem::copy_file(path_, copy);
+  db::snapshot_database(path_, copy, false);
   std::filesystem::copy_file(path_ + ".index", copy + ".index");
   const search::MotionSearch search(*retriever_, *words_, copy);
   SearchQuery query;
