@@ -3,34 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/body_joints.h"
+
 namespace remomask::rig {
 
 namespace {
 
-enum BodyJoint {
-  kBodyPelvis,
-  kBodyLeftHip,
-  kBodyRightHip,
-  kBodySpine1,
-  kBodyLeftKnee,
-  kBodyRightKnee,
-  kBodySpine2,
-  kBodyLeftAnkle,
-  kBodyRightAnkle,
-  kBodySpine3,
-  kBodyLeftToe,
-  kBodyRightToe,
-  kBodyNeck,
-  kBodyLeftCollar,
-  kBodyRightCollar,
-  kBodyHead,
-  kBodyLeftShoulder,
-  kBodyRightShoulder,
-  kBodyLeftElbow,
-  kBodyRightElbow,
-  kBodyLeftWrist,
-  kBodyRightWrist
-};
+using enum motion::BodyJoint;
 
 /// How much two joints move a ring: `share` of it goes to the second.
 struct Hold {
