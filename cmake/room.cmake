@@ -7,7 +7,7 @@ function(remomask_flags target)
     target_compile_options(${target} PRIVATE -Wno-restrict)
     if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
       # And of later ones on std::vector<bool>, as torch::autograd::Function uses it.
-      target_compile_options(${target} PRIVATE -Wno-array-bounds)
+      target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
     endif()
   endif()
   if(REMOMASK_WERROR)
