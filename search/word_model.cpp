@@ -45,7 +45,10 @@ void store_word_score(const std::string& path, const WordScore& score) {
 
 std::string text_file_of(const std::string& model_path) {
   const auto beside = std::filesystem::path(model_path).replace_filename("text.safetensors");
-  return std::filesystem::exists(beside) ? beside.string() : shipped_file("text.safetensors");
+  // In the folder of a training lies the stage of the model's own text tower under this name.
+  const bool is_encoder = std::filesystem::exists(beside) &&
+                          nn::has_stage(beside.string(), encoders::kTextEncoderStage);
+  return is_encoder ? beside.string() : shipped_file("text.safetensors");
 }
 
 }  // namespace remomask::search

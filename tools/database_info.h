@@ -8,7 +8,8 @@
 namespace remomask::tools {
 
 /// What a database holds: identity, counts of clips by split, source, licence
-/// and tag, the attributions that its data sets ask for, and which retrievers have embedded how many clips.
+/// and tag, the attributions that its data sets ask for, and which retrievers have embedded how
+/// many clips.
 nlohmann::json describe_database(const std::string& path);
 
 /// One clip without its positions.

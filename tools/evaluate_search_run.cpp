@@ -7,6 +7,7 @@
 #include "remomask/error.h"
 #include "search/word_model.h"
 #include "tools/evaluate_input.h"
+#include "tools/generation_run.h"
 
 namespace remomask::tools {
 
@@ -71,7 +72,7 @@ nlohmann::json report_json(const EvaluateSearchCommand& command,
 void run_evaluate_search(const EvaluateSearchCommand& command, Program& program) {
   const auto prompts = evaluation::read_search_prompts(command.prompts);
   const std::string model_path = command.files.model_path();
-  const std::string text_path = command.files.text_path();
+  const std::string text_path = text_file(command.files);
   const auto retriever =
       std::make_shared<const retriever::Retriever>(nn::load_stage(model_path, "retriever"));
   search::WordModel words = search::WordModel::open(text_path);

@@ -4,16 +4,21 @@
 
 #include "base/counted.h"
 #include "remomask/error.h"
+#include "search/word_model.h"
 
 namespace remomask::tools {
 
 TextToMotion open_model(const FileOptions& files, const Program& program, bool retrieval) {
   OpenOptions open;
   open.index = files.index;
-  open.text = retrieval ? files.text_path() : files.text;
+  open.text = files.text;
   open.threads = program.threads;
   open.retrieval = retrieval;
   return TextToMotion(files.model_path(), files.database_path(), open);
+}
+
+std::string text_file(const FileOptions& files) {
+  return files.text.empty() ? search::text_file_of(files.model_path()) : files.text;
 }
 
 void stop_after(int done, int count, uint64_t seed) {

@@ -16,6 +16,9 @@ namespace remomask::tools {
 /// The library's face on the files and threads that were chosen. `retrieval`: as in OpenOptions.
 TextToMotion open_model(const FileOptions& files, const Program& program, bool retrieval = true);
 
+/// The text file that goes with the model, unless --text names another.
+std::string text_file(const FileOptions& files);
+
 /// Throws Interrupted that says how to make the motions that are missing: `done` of `count` are
 /// stored, the next one has `seed`.
 [[noreturn]] void stop_after(int done, int count, uint64_t seed);

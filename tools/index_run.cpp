@@ -6,6 +6,7 @@
 #include "nn/model_file.h"
 #include "retriever/embed_database.h"
 #include "search/embed_captions.h"
+#include "tools/generation_run.h"
 #include "tools/index_command.h"
 #include "tools/index_path.h"
 
@@ -47,7 +48,7 @@ void run_index(const IndexCommand& command, Program& program) {
   db::Database database(command.files.database_path(), db::OpenMode::read_write);
   const Monitor monitor = program.monitor();
   const int64_t embedded = retriever::embed_database(database, retriever, monitor);
-  const auto encoder = encoders::SentenceEncoder::open(command.files.text_path());
+  const auto encoder = encoders::SentenceEncoder::open(text_file(command.files));
   if (command.rebuild) database.drop_unused_caption_vectors("");
   const int64_t captions = search::embed_captions(database, encoder, monitor);
   index::UpdateOptions update;

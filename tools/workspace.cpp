@@ -1,7 +1,5 @@
 #include "tools/workspace.h"
 
-#include <filesystem>
-
 #include "db/captions_index.h"
 #include "db/clip_filter.h"
 #include "remomask/error.h"
@@ -23,12 +21,6 @@ void FileOptions::add_database(CLI::App& command) {
 
 std::string FileOptions::model_path() const {
   return model.empty() ? shipped_file("base.safetensors") : model;
-}
-
-std::string FileOptions::text_path() const {
-  if (!text.empty()) return text;
-  const auto beside = std::filesystem::path(model_path()).replace_filename("text.safetensors");
-  return std::filesystem::exists(beside) ? beside.string() : shipped_file("text.safetensors");
 }
 
 std::string FileOptions::database_path() const {

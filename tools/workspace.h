@@ -18,7 +18,6 @@ struct FileOptions {
   void add_model(CLI::App& command);
   void add_database(CLI::App& command);
   std::string model_path() const;
-  std::string text_path() const;
   std::string database_path() const;
 };
 
