@@ -75,8 +75,8 @@ TEST_F(PipelineTest, SearchFiltersAndExplains) {
   ASSERT_EQ(found["hits"].size(), 5u);
   double before = 2;
   for (const auto& hit : found["hits"]) {
-    EXPECT_LE(hit["similarity"], before);
-    before = hit["similarity"];
+    EXPECT_LE(hit["probability"], before);
+    before = hit["probability"];
     EXPECT_FALSE(hit["captions"].empty());
   }
   const auto squats = run_json(with_model(

@@ -33,7 +33,7 @@ TEST(SearchCommand, FindsByMotionPartsAndBoth) {
   EXPECT_EQ(arms["hits"].size(), static_cast<size_t>(others));
   const auto both = run_json({"search", "a person jumps", "--like-clip", kStored, "--text-weight",
                               "1", "--motion-weight", "0", "-k", "1"});
-  EXPECT_NE(both["hits"][0]["clip"].get<std::string>().find("jump"), std::string::npos);
+  EXPECT_NE(both["hits"][0]["captions"].dump().find("jump"), std::string::npos);
 }
 
 TEST(SearchCommand, ReadsMotionFilesAndPiecesOfThem) {
@@ -86,9 +86,10 @@ TEST(SearchCommand, RefusesBadQueriesClearly) {
       {{"search", "walk", "--from", "1"}, "--like"},
       {{"search", "walk", "--captions"}, "captions are looked up for"},
       {{"search", "--", "-walk -run"}, "not wanted"},
-      {{"search", "walk", "--boost-words", "..."}, "no word"},
+      {{"search", "walk", "--boost-words", "slow"}, "--by motion"},
+      {{"search", "walk", "--by", "motion", "--boost-words", "..."}, "no word"},
       {{"search", "walk", "--min-probability", "2"}, "no probability"},
-      {{"search", "walk", "--min-probability", "0.5"}, "evaluate calibration"},
+      {{"search", "walk", "--by", "motion", "--min-probability", "0.5"}, "evaluate calibration"},
       {{"search", "--like-clip", kStored, "--parts", "arms", "--moments"}, "whole body"},
   };
   for (const auto& [arguments, expected] : cases) {
