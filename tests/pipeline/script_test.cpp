@@ -173,8 +173,8 @@ TEST(LiftToFloorSmoothly, RaisesTheSurroundingsOfADeepStep) {
 }
 
 TEST(LengthDistribution, FollowsTheNearest) {
-  // The second counts exp(-0.1 / 0.05) = 0.135 of the first.
-  const auto distribution = pipeline::length_distribution({{0.9, 80}, {0.8, 120}, {0.9, 0}});
+  // The second counts exp(-0.2 / 0.1) = 0.135 of the first.
+  const auto distribution = pipeline::length_distribution({{0.9, 80}, {0.7, 120}, {0.9, 0}});
   ASSERT_EQ(distribution.size(), 50u);
   const double whole = 1 + std::exp(-2.0);
   EXPECT_NEAR(distribution[20], 3. / 9 / whole, 1e-9);
