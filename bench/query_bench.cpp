@@ -28,8 +28,7 @@ constexpr int kQueries = 200;
 struct Searched {
   retriever::Retriever retriever{
       nn::load_model(file_named("REMOMASK_MODEL", "base.safetensors")).at("retriever")};
-  db::Database database{file_named("REMOMASK_DATABASE", "motions.sqlite"),
-                        db::OpenMode::read_only};
+  db::Database database{file_named("REMOMASK_DATABASE", "motions.sqlite"), db::OpenMode::read_only};
   std::shared_ptr<const search::SearchState> state = std::make_shared<search::SearchState>(
       index::VectorIndex::open(index::default_index_path(database.path()), database,
                                retriever.hash()),
