@@ -23,14 +23,13 @@ CaptionTable::CaptionTable(const std::vector<db::Clip>& clips,
   }
   for (const db::Clip& clip : clips) {
     first_.push_back(static_cast<int64_t>(rows_.size()));
+    bool complete = true;
     for (const std::string& caption : clip.captions) {
       const auto place = places.find(caption);
-      if (place == places.end()) {
-        ++without_vector_;
-      } else {
-        rows_.push_back(place->second);
-      }
+      complete = complete && place != places.end();
+      if (place != places.end()) rows_.push_back(place->second);
     }
+    if (!complete) ++incomplete_clips_;
   }
   first_.push_back(static_cast<int64_t>(rows_.size()));
 }

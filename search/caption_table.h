@@ -18,7 +18,7 @@ struct CaptionMatch {
 /// one of them: the cost is one product of a matrix [texts][width] and a vector.
 class CaptionTable {
  public:
-  /// `clips` as Database::clips() gives them; captions without a vector are left out and counted.
+  /// `clips` as Database::clips() gives them; captions without a vector are left out.
   CaptionTable(const std::vector<db::Clip>& clips, const std::vector<db::CaptionVector>& vectors);
 
   /// Cosines of a vector [width] and every caption. Throws Error for another width.
@@ -30,12 +30,13 @@ class CaptionTable {
 
   const std::string& text(int32_t caption) const { return texts_[static_cast<size_t>(caption)]; }
   size_t size() const { return texts_.size(); }
-  int64_t without_vector() const { return without_vector_; }
+  /// Clips with a caption that has no vector.
+  int64_t incomplete_clips() const { return incomplete_clips_; }
 
  private:
   std::vector<std::string> texts_;
   std::vector<float> vectors_;  // [texts][width]
-  int64_t width_ = 0, without_vector_ = 0;
+  int64_t width_ = 0, incomplete_clips_ = 0;
   std::vector<int64_t> first_;  // of each clip in rows_, and the end
   std::vector<int32_t> rows_;   // captions of the clips
 };

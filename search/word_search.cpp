@@ -71,8 +71,7 @@ SearchScene MotionSearch::Impl::word_scene(const SearchQuery& query,
   if (!state->caption_table) {
     state->caption_table =
         std::make_shared<CaptionTable>(state->clips, database.caption_vectors(hash));
-    const int64_t missing = state->caption_table->without_vector();
-    if (missing > 0 && state->caption_table->size() == 0) {
+    if (state->caption_table->incomplete_clips() > 0 && state->caption_table->size() == 0) {
       state->caption_table.reset();
       throw Error(database.path() +
                   ": its captions have no vectors of this text encoder; run: remomask index " +
@@ -161,6 +160,7 @@ SearchAnswer MotionSearch::Impl::search_words(const SearchQuery& query) const {
   const WordScore score = words->score.value_or(WordScore());
   const std::vector<RankedClip> ranked = rank_clips(scene, worded.variants, score, query.by);
   SearchAnswer answer = collect_ranked(scene, query, ranked);
+  answer.unsearched = std::max(answer.unsearched, scene.caption_table->incomplete_clips());
   answer.words = coverage(worded, scene, ranked);
   answer.corrected = worded.sentence.corrected;
   if (!answer.corrected.empty()) answer.sentence = worded.sentence.text;

@@ -209,6 +209,7 @@ TEST_F(WordSearchTest, FollowsChangesAndAsksForMissingVectors) {
     db::ClipChanges changes;
     changes.captions = {"someone juggles balls."};
     database.update_clip(*database.find_name("dumb"), changes);
+    EXPECT_EQ(search.search(query).unsearched, 1);
     EXPECT_EQ(search::embed_captions(database, *(*words_)->encoder), 1);
     EXPECT_EQ(search::embed_captions(database, *(*words_)->encoder), 0);
   }
