@@ -79,7 +79,7 @@ std::string words_text(const std::vector<QueryWord>& words,
     if (word.covered >= kCoveredWord) continue;
     missing += fmt::format("{}\"{}\"", missing.empty() ? "" : ", ", word.word);
   }
-  if (!missing.empty()) text += "nothing in this database shows " + missing + "; nearest:";
+  if (!missing.empty()) text += "nothing in this database shows " + missing;
   if (text.ends_with("; ")) text.resize(text.size() - 2);
   return text;
 }

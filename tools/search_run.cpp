@@ -89,7 +89,7 @@ void print_answer(const SearchAnswer& answer) {
                score_text(*answer.refused));
   }
   const std::string lead = words_text(answer.words, answer.corrected);
-  if (!lead.empty()) fmt::print("{}\n", lead);
+  if (!lead.empty()) fmt::print("{}; nearest:\n", lead);
   for (const MotionHit& hit : answer.hits) print_hit(hit);
 }
 
