@@ -230,7 +230,7 @@ MotionSearch& MotionSearch::operator=(MotionSearch&&) noexcept = default;
 SearchAnswer MotionSearch::search(const SearchQuery& query) const {
   check_query(query);
   if (asks_by_words(query)) {
-    SearchAnswer answer = impl_->search_words(query);
+    SearchAnswer answer = impl_->search_words(query, parse_sentence(query.text));
     const Sentence asked = parse_sentence(answer.sentence.empty() ? query.text : answer.sentence);
     if (query.moments) impl_->find_moments({impl_->text_vector(asked.text), {}}, answer.hits);
     return answer;
@@ -298,7 +298,8 @@ FoundClips MotionSearch::find(const std::string& sentence, int k, const ClipFilt
   query.text = sentence;
   query.k = k;
   query.filter = filter;
-  SearchAnswer answer = impl_->search_words(query);
+  // A minus in a prompt excludes nothing: it is read by the generator, too.
+  SearchAnswer answer = impl_->search_words(query, {sentence, {}});
   const std::scoped_lock lock(impl_->mutex);
   const db::ReadSnapshot snapshot(impl_->database);
   return {impl_->with_vectors(std::move(answer.hits)), std::move(answer.words)};

@@ -26,8 +26,9 @@ struct FoundClips {
 
 /// Search in a motion database: a model's retriever, the database and its index.
 /// Const functions may be called from several threads; they take turns at the
-/// database and work side by side otherwise. Every search sees one state of the
-/// database, including changes that other programs made since the last search.
+/// database, a search by words also at its sentence encoder, and work side by side otherwise. Every
+/// search sees one state of the database, including changes that other programs made since the last
+/// search.
 class MotionSearch {
  public:
   /// `index_path` empty: beside the database. Throws Error if a file is missing or damaged, or

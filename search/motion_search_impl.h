@@ -63,7 +63,7 @@ struct MotionSearch::Impl {
   // In word_search.cpp.
 
   /// The clips that answer a sentence by its words, captions and motions.
-  SearchAnswer search_words(const SearchQuery& query) const;
+  SearchAnswer search_words(const SearchQuery& query, const Sentence& sentence) const;
   SearchScene word_scene(const SearchQuery& query, const Sentence& sentence) const;
   WordedQuery worded_query(const SearchQuery& query, const Sentence& sentence) const;
   SpelledSentence spelled(const std::string& sentence) const;

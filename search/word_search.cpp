@@ -142,7 +142,8 @@ std::vector<QueryWord> MotionSearch::Impl::coverage(const WordedQuery& worded,
   return covered_words(*words->encoder, question);
 }
 
-SearchAnswer MotionSearch::Impl::search_words(const SearchQuery& query) const {
+SearchAnswer MotionSearch::Impl::search_words(const SearchQuery& query,
+                                              const Sentence& sentence) const {
   if (!words) {
     throw Error("opened without a text encoder: search by motion, or open with a text file");
   }
@@ -151,7 +152,6 @@ SearchAnswer MotionSearch::Impl::search_words(const SearchQuery& query) const {
         "the text file holds no score for its encoder; fit one: remomask evaluate search "
         "--prompts FILE --fit, or search by captions, words or motion");
   }
-  const Sentence sentence = parse_sentence(query.text);
   const std::scoped_lock lock(mutex);
   const db::ReadSnapshot snapshot(database);
   refresh();

@@ -32,7 +32,6 @@ const std::string kModel = kModels + "base.safetensors";
 struct MotionQuery : SearchQuery {
   MotionQuery() { by = SearchBy::motion; }
 };
-
 double dot(std::span<const float> left, std::span<const float> right) {
   return std::inner_product(left.begin(), left.end(), right.begin(), 0.0);
 }
