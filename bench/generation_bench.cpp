@@ -15,6 +15,7 @@
 #include "bench/machine_peak.h"
 #include "bench/model_work.h"
 #include "bench/random_model.h"
+#include "encoders/text_file.h"
 #include "nn/model_file.h"
 #include "nn/threads.h"
 #include "pipeline/motion_generator.h"
@@ -29,18 +30,21 @@ constexpr double kSeconds = kMaxClipSeconds;
 
 struct BenchModel {
   std::string label;
+  std::shared_ptr<const encoders::SentenceEncoder> words;
   std::map<std::string, nn::ModelStage> stages;
 
   BenchModel() {
     const char* named = std::getenv("REMOMASK_MODEL");
     const std::string path =
         named != nullptr ? named : REMOMASK_SOURCE_DIR "/models/base.safetensors";
+    words = std::make_shared<const encoders::SentenceEncoder>(
+        encoders::SentenceEncoder::open(encoders::text_file_of(path)));
     if (named != nullptr || std::filesystem::exists(path)) {
       label = std::filesystem::path(path).filename().string();
       stages = nn::load_model(path);
     } else {
       label = "random weights";
-      stages = random_stages(training::model_preset(parse_preset("base")));
+      stages = random_stages(training::model_preset(parse_preset("base")), *words);
     }
   }
 };
@@ -91,7 +95,7 @@ GenerationWork generation_work(const BenchModel& model, const pipeline::Generato
 
 void time_generation(benchmark::State& state) {
   static const BenchModel model;
-  static const pipeline::Generator generator(model.stages);
+  static const pipeline::Generator generator(model.stages, model.words);
   nn::set_compute_threads(static_cast<int>(state.range(0)));
   state.SetLabel(model.label);
   const auto hits = random_hits(generator);

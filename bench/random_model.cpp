@@ -3,28 +3,18 @@
 #include <torch/types.h>
 
 #include "retriever/retriever_model.h"
-#include "synthetic/procedural.h"
-#include "text/caption.h"
 #include "tokenizer/tokenizer_network.h"
 
 namespace remomask {
 
 namespace {
 
-nn::ModelStage random_retriever_stage(retriever::RetrieverConfig config) {
-  synthetic::ProceduralOptions options;
-  options.count = 60;
-  std::vector<std::string> captions;
-  for (const synthetic::ProceduralClip& clip : synthetic::make_procedural_clips(options)) {
-    for (const std::string& caption : clip.captions)
-      captions.push_back(text::normalise_caption(caption));
-  }
-  encoders::TextEncoderConfig text =
-      encoders::text_encoder_preset(parse_preset(config.preset).size);
-  text.vocabulary = text::train_wordpiece(captions, text.vocabulary_size);
-  config.text_tower = encoders::TextEncoder(text).config();
+nn::ModelStage random_retriever_stage(retriever::RetrieverConfig config,
+                                      const encoders::SentenceEncoder& words) {
+  config.text_encoder = words.tower_hash();
+  config.text_encoder_width = words.width();
   return {"retriever", nlohmann::json(config),
-          nn::module_tensors(retriever::RetrieverModel(config))};
+          nn::module_tensors(retriever::RetrieverModel(config, words.tower()))};
 }
 
 }  // namespace
@@ -38,8 +28,10 @@ nn::ModelStage random_tokenizer_stage(const tokenizer::TokenizerConfig& config) 
   return {"tokenizer", nlohmann::json(config), nn::module_tensors(*network)};
 }
 
-std::map<std::string, nn::ModelStage> random_stages(const training::ModelConfig& config) {
-  return {{"retriever", random_retriever_stage(config.retriever)},
+std::map<std::string, nn::ModelStage> random_stages(training::ModelConfig config,
+                                                    const encoders::SentenceEncoder& words) {
+  config.masked.text_width = config.residual.text_width = words.width();
+  return {{"retriever", random_retriever_stage(config.retriever, words)},
           {"tokenizer", random_tokenizer_stage(config.tokenizer)},
           {"masked", generator::masked_stage(generator::MaskedTransformer(config.masked))},
           {"residual", generator::residual_stage(generator::ResidualTransformer(config.residual))}};

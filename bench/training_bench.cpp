@@ -30,8 +30,8 @@ const training::TrainingSplits& training_clips() {
   static const training::TrainingSplits splits = [] {
     const db::Database database(file_named("REMOMASK_DATABASE", "motions.sqlite"),
                                 db::OpenMode::read_only);
-    return training::TrainingSplits{
-        db::load_training_set(database, {}), {}, {}};  // no val: steps alone
+    return training::TrainingSplits{db::load_training_set(database, {}),
+                                    {}};  // no val: steps alone
   }();
   return splits;
 }
@@ -132,7 +132,6 @@ void once(benchmark::internal::Benchmark* bench) {
   if (available_cpus() > 1) bench->Arg(available_cpus());
 }
 
-BENCHMARK_CAPTURE(train_steps, text, "text", 60)->Apply(once);
 BENCHMARK_CAPTURE(train_steps, retriever, "retriever", 24)->Apply(once);
 BENCHMARK_CAPTURE(train_steps, tokenizer, "tokenizer", 60)->Apply(once);
 BENCHMARK_CAPTURE(train_steps, masked, "masked", 24)->Apply(once);

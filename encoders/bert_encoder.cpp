@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/json.h"
+#include "nn/layers.h"
 #include "remomask/error.h"
 #include "text/caption.h"
 
@@ -56,6 +57,65 @@ void register_weight(torch::nn::Module& root, const std::string& name, const at:
   }
   module->register_parameter(name.substr(begin), value);
 }
+
+void check_layers(const BertConfig& config, int64_t last) {
+  if (last >= 0 && last <= config.layers) return;
+  throw Error("the text encoder has " + std::to_string(config.layers) + " layers, not " +
+              std::to_string(last));
+}
+
+/// The blocks of an encoder, or of its tail, over their weights.
+struct Blocks {
+  const BertConfig& config;
+  const nn::TensorMap& weights;
+  const LowRankAdapter* adapter = nullptr;
+
+  at::Tensor linear(const std::string& layer, const at::Tensor& x) const {
+    const at::Tensor y =
+        torch::linear(x, weights.at(layer + ".weight"), weights.at(layer + ".bias"));
+    return adapter != nullptr ? y + adapter->output_change(layer, x) : y;
+  }
+
+  at::Tensor norm(const std::string& layer, const at::Tensor& x) const {
+    return torch::layer_norm(x, {config.width}, weights.at(layer + ".weight"),
+                             weights.at(layer + ".bias"), config.norm_epsilon);
+  }
+
+  at::Tensor block(int64_t number, const at::Tensor& x, const at::Tensor& bias) const {
+    const std::string name = block_name(number);
+    const at::Tensor attended =
+        nn::multi_head_attention(linear(name + "query", x), linear(name + "key", x),
+                                 linear(name + "value", x), bias, config.heads);
+    const at::Tensor y =
+        norm(name + "attention_norm", x + linear(name + "attention_output", attended));
+    return norm(name + "output_norm",
+                y + linear(name + "contract", torch::gelu(linear(name + "expand", y))));
+  }
+};
+
+class BertTail final : public TextTail {
+ public:
+  BertTail(const BertConfig& config, nn::TensorMap weights, int64_t layers)
+      : config_(config), weights_(std::move(weights)), layers_(layers) {
+    for (const auto& [name, value] : weights_) register_weight(*this, name, value);
+    for (const auto& parameter : named_parameters()) weights_[parameter.key()] = parameter.value();
+  }
+
+  at::Tensor forward(const at::Tensor& states, const at::Tensor& mask) override {
+    const Blocks blocks{config_, weights_};
+    const at::Tensor bias = nn::key_mask_bias(mask);
+    at::Tensor x = states;
+    for (int64_t i = config_.layers - layers_; i < config_.layers; ++i) {
+      x = blocks.block(i, x, bias);
+    }
+    return x;
+  }
+
+ private:
+  BertConfig config_;  // without the vocabulary
+  nn::TensorMap weights_;
+  int64_t layers_;
+};
 
 }  // namespace
 
@@ -189,6 +249,11 @@ nlohmann::json BertEncoder::config() const {
   return whole;
 }
 
+std::vector<int64_t> BertEncoder::special_ids() const {
+  return {wordpiece_->pad_id(), wordpiece_->start_id(), wordpiece_->end_id(),
+          wordpiece_->mask_id()};
+}
+
 text::BertTokens BertEncoder::read(const std::string& text) const {
   return wordpiece_->encode(text, config_.max_tokens);
 }
@@ -223,35 +288,33 @@ TokenBatch BertEncoder::tokenize(const std::vector<std::string>& captions) const
   return batch(texts);
 }
 
-at::Tensor BertEncoder::linear(const std::string& layer, const at::Tensor& x) const {
-  const at::Tensor y = torch::linear(x, weight(layer + ".weight"), weight(layer + ".bias"));
-  return adapter_ ? y + adapter_->output_change(layer, x) : y;
-}
-
-at::Tensor BertEncoder::norm(const std::string& layer, const at::Tensor& x) const {
-  return torch::layer_norm(x, {config_.width}, weight(layer + ".weight"), weight(layer + ".bias"),
-                           config_.norm_epsilon);
-}
-
-at::Tensor BertEncoder::block(int64_t number, const at::Tensor& x, const at::Tensor& bias) const {
-  const std::string name = block_name(number);
-  const at::Tensor attended =
-      nn::multi_head_attention(linear(name + "query", x), linear(name + "key", x),
-                               linear(name + "value", x), bias, config_.heads);
-  const at::Tensor y =
-      norm(name + "attention_norm", x + linear(name + "attention_output", attended));
-  return norm(name + "output_norm",
-              y + linear(name + "contract", torch::gelu(linear(name + "expand", y))));
-}
-
 TextStates BertEncoder::encode(const at::Tensor& ids, const at::Tensor& mask) {
-  at::Tensor x = torch::embedding(weight("words"), ids) +
-                 weight("positions").slice(0, 0, ids.size(1)) + weight("type");
-  x = norm("norm", x);
-  const at::Tensor bias = nn::key_mask_bias(mask);
-  for (int64_t i = 0; i < config_.layers; ++i) x = block(i, x, bias);
+  const at::Tensor x = encode_below(ids, mask, 0);
   const at::Tensor share = mask.to(x.scalar_type()).unsqueeze(2);
   return {x, (x * share).sum(1) / share.sum(1)};
+}
+
+at::Tensor BertEncoder::encode_below(const at::Tensor& ids, const at::Tensor& mask,
+                                     int64_t left_out) const {
+  check_layers(config_, left_out);
+  const Blocks blocks{config_, weights_, adapter_.get()};
+  at::Tensor x = torch::embedding(weight("words"), ids) +
+                 weight("positions").slice(0, 0, ids.size(1)) + weight("type");
+  x = blocks.norm("norm", x);
+  const at::Tensor bias = nn::key_mask_bias(mask);
+  for (int64_t i = 0; i < config_.layers - left_out; ++i) x = blocks.block(i, x, bias);
+  return x;
+}
+
+std::shared_ptr<TextTail> BertEncoder::tail(int64_t layers) const {
+  check_layers(config_, layers);
+  nn::TensorMap weights;
+  for (int64_t i = config_.layers - layers; i < config_.layers; ++i) {
+    for (const auto& [name, value] : weights_) {
+      if (name.starts_with(block_name(i))) weights[name] = value.detach().clone();
+    }
+  }
+  return std::make_shared<BertTail>(config_, std::move(weights), layers);
 }
 
 std::shared_ptr<BertEncoder> BertEncoder::merged(const LowRankAdapter& adapter) const {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -45,11 +47,16 @@ class BertEncoder final : public TextTower {
   BertEncoder(const BertConfig& config, const nn::TensorMap& weights, const std::string& origin);
 
   TextStates encode(const at::Tensor& ids, const at::Tensor& mask) override;
+  at::Tensor encode_below(const at::Tensor& ids, const at::Tensor& mask,
+                          int64_t left_out) const override;
+  std::shared_ptr<TextTail> tail(int64_t layers) const override;
   TokenBatch tokenize(const std::vector<std::string>& captions) const override;
   int64_t mask_id() const override { return wordpiece_->mask_id(); }
+  std::vector<int64_t> special_ids() const override;
   const text::BertWordPiece& wordpiece() const { return *wordpiece_; }
   int64_t width() const override { return config_.width; }
-  nlohmann::json config() const override;
+  /// Everything that read_bert_config() needs.
+  nlohmann::json config() const;
 
   /// Any text, an empty one too.
   text::BertTokens read(const std::string& text) const;
@@ -67,9 +74,6 @@ class BertEncoder final : public TextTower {
  private:
   BertEncoder(const BertConfig& config, std::shared_ptr<const text::BertWordPiece> wordpiece,
               const nn::TensorMap& weights, const std::string& origin);
-  at::Tensor linear(const std::string& layer, const at::Tensor& x) const;
-  at::Tensor norm(const std::string& layer, const at::Tensor& x) const;
-  at::Tensor block(int64_t number, const at::Tensor& x, const at::Tensor& bias) const;
   const at::Tensor& weight(const std::string& name) const { return weights_.at(name); }
 
   BertConfig config_;  ///< without the vocabulary, which `wordpiece_` holds

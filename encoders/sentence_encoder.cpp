@@ -58,7 +58,7 @@ at::Tensor unit_rows(const at::Tensor& rows) {
 struct SentenceEncoder::Impl {
   std::shared_ptr<BertEncoder> plain;
   std::shared_ptr<BertEncoder> adapted;  ///< `plain` itself without an adapter
-  std::string hash;
+  std::string tower_hash, hash;
 };
 
 SentenceEncoder::SentenceEncoder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -67,13 +67,17 @@ SentenceEncoder::SentenceEncoder(SentenceEncoder&&) noexcept = default;
 SentenceEncoder& SentenceEncoder::operator=(SentenceEncoder&&) noexcept = default;
 
 SentenceEncoder SentenceEncoder::open(const std::string& path) {
-  const auto stages = nn::load_model(path);
-  const nn::ModelStage& base = nn::require_stage(stages, kTextEncoderStage, path);
+  return of_stages(nn::load_model(path), path);
+}
+
+SentenceEncoder SentenceEncoder::of_stages(const std::map<std::string, nn::ModelStage>& stages,
+                                           const std::string& origin) {
+  const nn::ModelStage& base = nn::require_stage(stages, kTextEncoderStage, origin);
   auto impl = std::make_unique<Impl>();
   try {
     const BertConfig config = read_bert_config(base.config);
     impl->plain = std::make_shared<BertEncoder>(config, base.tensors, "text encoder");
-    impl->hash = nn::stage_hash(base);
+    impl->tower_hash = impl->hash = nn::stage_hash(base);
     impl->adapted = impl->plain;
     const auto adapter = stages.find(kAdapterStage);
     if (adapter != stages.end()) {
@@ -84,7 +88,7 @@ SentenceEncoder SentenceEncoder::open(const std::string& path) {
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
-    throw FileError(path, 0, error.what());
+    throw FileError(origin, 0, error.what());
   }
   impl->plain->eval();
   impl->adapted->eval();
@@ -140,5 +144,7 @@ int64_t SentenceEncoder::width() const { return impl_->plain->width(); }
 int64_t SentenceEncoder::max_tokens() const { return impl_->plain->max_tokens(); }
 bool SentenceEncoder::has_adapter() const { return impl_->adapted != impl_->plain; }
 const std::string& SentenceEncoder::hash() const { return impl_->hash; }
+std::shared_ptr<TextTower> SentenceEncoder::tower() const { return impl_->plain; }
+const std::string& SentenceEncoder::tower_hash() const { return impl_->tower_hash; }
 
 }  // namespace remomask::encoders

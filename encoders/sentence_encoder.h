@@ -1,11 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+namespace remomask::nn {
+struct ModelStage;
+}
+
 namespace remomask::encoders {
+
+class TextTower;
 
 /// A word of a text, read in its sentence.
 struct WordState {
@@ -26,6 +33,9 @@ class SentenceEncoder {
   /// Reads a text file: its encoder, and its adapter if it has one. Throws FileError when the file
   /// holds no text encoder, is damaged, or holds an adapter of another encoder.
   static SentenceEncoder open(const std::string& path);
+  /// The same for the stages of a text file that was read from `origin`.
+  static SentenceEncoder of_stages(const std::map<std::string, nn::ModelStage>& stages,
+                                   const std::string& origin);
   ~SentenceEncoder();
   SentenceEncoder(SentenceEncoder&&) noexcept;
   SentenceEncoder& operator=(SentenceEncoder&&) noexcept;
@@ -51,6 +61,12 @@ class SentenceEncoder {
   /// Identity of weights, config and adapter, like Retriever::hash(): vectors of encoders of
   /// different hashes must not be compared.
   const std::string& hash() const;
+
+  /// The encoder without its adapter: what retriever and generator read the states of words of.
+  /// Shared and constant; nobody trains it.
+  std::shared_ptr<TextTower> tower() const;
+  /// Identity of the weights and the config of tower().
+  const std::string& tower_hash() const;
 
  private:
   struct Impl;

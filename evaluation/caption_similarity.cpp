@@ -5,7 +5,7 @@
 #include <map>
 
 #include "text/caption.h"
-#include "text/wordpiece.h"
+#include "text/words.h"
 
 namespace remomask::evaluation {
 

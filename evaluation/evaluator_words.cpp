@@ -8,7 +8,7 @@
 #include "evaluation/word_classes.h"
 #include "remomask/error.h"
 #include "text/caption.h"
-#include "text/wordpiece.h"
+#include "text/words.h"
 
 namespace remomask::evaluation {
 

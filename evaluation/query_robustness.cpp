@@ -9,7 +9,7 @@
 #include <set>
 
 #include "remomask/error.h"
-#include "text/wordpiece.h"
+#include "text/words.h"
 
 namespace remomask::evaluation {
 

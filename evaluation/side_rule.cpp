@@ -10,7 +10,7 @@
 #include "motion/heading.h"
 #include "remomask/error.h"
 #include "text/caption.h"
-#include "text/wordpiece.h"
+#include "text/words.h"
 
 namespace remomask::evaluation {
 

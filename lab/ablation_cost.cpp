@@ -18,9 +18,13 @@ double transformer_weights(double width, double hidden, double layers) {
   return layers * (4 * width * width + 2 * width * hidden);
 }
 
-double text_weights(const encoders::TextEncoderConfig& text) {
-  return transformer_weights(static_cast<double>(text.width), static_cast<double>(text.hidden),
-                             static_cast<double>(text.layers));
+// Of the shipped sentence encoder, without its tables: 6 layers of 384, hidden 1536.
+const double kTowerWeights = transformer_weights(384, 1536, 6);
+
+double reader_weights(const retriever::RetrieverConfig& config) {
+  return transformer_weights(static_cast<double>(config.text_width),
+                             static_cast<double>(config.text_hidden),
+                             static_cast<double>(config.text_layers));
 }
 
 template <typename Config>
@@ -53,16 +57,14 @@ double pass_operations(const Config& config) {
 double training_cost(const training::TrainingRecipe& recipe, const std::string& stage) {
   const auto steps = static_cast<double>(training::stage_trainer(recipe, stage).steps);
   double operations = 0;  // of the forward pass of a step, additions not counted
-  if (stage == "text") {
-    operations =
-        text_weights(recipe.text) * kWords * static_cast<double>(recipe.text_training.batch);
-  } else if (stage == "retriever") {
+  if (stage == "retriever") {
     const training::RetrieverTrainingOptions& options = recipe.retriever_training;
     // The momentum twin sees every patch and has no backward pass.
     const double patches = 4 * kTokenFrames / static_cast<double>(recipe.model.retriever.patch) *
                            (options.patch_keep + kForward / kTraining);
     operations = (weights_of(retriever::MotionEncoder(recipe.model.retriever)) * patches +
-                  text_weights(recipe.text) * kWords * (1 + kForward / kTraining)) *
+                  kWords * (reader_weights(recipe.model.retriever) * (1 + kForward / kTraining) +
+                            kTowerWeights * 2 * kForward / kTraining)) *
                  static_cast<double>(options.batch);
   } else if (stage == "tokenizer") {
     operations = weights_of(*tokenizer::TokenizerNetwork(recipe.model.tokenizer)) *

@@ -23,7 +23,6 @@ std::string key_of(const nlohmann::json& identity) {
 
 /// The stages whose results a stage reads.
 std::vector<std::string> stage_inputs(const std::string& stage) {
-  if (stage == "retriever") return {"text"};
   if (stage == "masked" || stage == "residual") return {"tokenizer", "retriever"};
   return {};
 }
@@ -47,12 +46,10 @@ training::TrainingRecipe ablation_recipe(const AblationOptions& options, const s
                               steps == options.steps.end() ? trainer.steps : steps->second);
     const auto batch = options.batch.find(stage);
     if (batch != options.batch.end()) training::set_stage_batch(recipe, stage, batch->second);
-    const bool shared = stage == "text" || stage == "tokenizer";
-    trainer.seed = shared ? options.seeds.front() : seed;
+    trainer.seed = stage == "tokenizer" ? options.seeds.front() : seed;
   }
   // Only the final figures are compared; intermediate ones would cost as much as training a small
   // model.
-  recipe.text_training.validation_every = recipe.text_training.trainer.steps;
   recipe.retriever_training.validation_every = recipe.retriever_training.trainer.steps;
   recipe.tokenizer_training.validate_every = recipe.tokenizer_training.trainer.steps;
   recipe.masked_training.validate_every = recipe.masked_training.trainer.steps;

@@ -61,8 +61,9 @@ struct AblationPlan {
 
 /// What the results of a plan depend on besides its options.
 struct AblationData {
-  std::string training;  ///< identity of the clips of training and validation
-  std::string exam;      ///< of the clips that are asked about, and of the judge
+  std::string
+      training;      ///< identity of the clips of training and validation, and of the text encoder
+  std::string exam;  ///< of the clips that are asked about, and of the judge
 };
 
 /// Makes the plan for the options. Files are named by a hash of everything that their content

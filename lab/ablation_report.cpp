@@ -27,11 +27,10 @@ nlohmann::json read_trial(const AblationTrial& trial) {
   return document;
 }
 
-/// Weights that a generation uses; the text stage is part of the retriever.
+/// Weights that a generation uses besides the sentence encoder.
 int64_t model_weights(const AblationModel& model) {
   int64_t count = 0;
   for (const auto& [stage, file] : model.files) {
-    if (stage == "text") continue;
     for (const auto& [name, tensor] : nn::load_stage(file, stage).tensors) count += tensor.numel();
   }
   return count;

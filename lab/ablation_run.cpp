@@ -165,9 +165,11 @@ std::vector<Motion> generate_answers(const AblationModel& model, const SamplingO
                                      const Monitor& monitor) {
   std::map<std::string, nn::ModelStage> stages;
   for (const auto& [stage, file] : model.files) {
-    if (stage != "text") stages.emplace(stage, nn::load_stage(file, stage));
+    stages.emplace(stage, nn::load_stage(file, stage));
   }
-  const pipeline::Generator generator(stages);
+  const pipeline::Generator generator(std::make_shared<retriever::Retriever>(
+                                          retriever::open_retriever(model.files.at("retriever"))),
+                                      stages);
   Monitor stop_only;
   stop_only.stop = monitor.stop;
   std::vector<Motion> motions;

@@ -125,6 +125,22 @@ TensorMap module_tensors(const torch::nn::Module& module) {
   return tensors;
 }
 
+std::vector<std::string> load_fitting_tensors(torch::nn::Module& module, const TensorMap& tensors) {
+  at::NoGradGuard no_grad;
+  std::vector<std::string> left;
+  const auto load = [&](const std::string& name, at::Tensor target) {
+    const auto found = tensors.find(name);
+    if (found != tensors.end() && found->second.sizes() == target.sizes()) {
+      target.copy_(found->second);
+    } else {
+      left.push_back(name);
+    }
+  };
+  for (auto& item : module.named_parameters()) load(item.key(), item.value());
+  for (auto& item : module.named_buffers()) load(item.key(), item.value());
+  return left;
+}
+
 void load_module_tensors(torch::nn::Module& module, const TensorMap& tensors,
                          const std::string& origin) {
   at::NoGradGuard no_grad;

@@ -15,7 +15,7 @@ namespace remomask::nn {
 
 /// One trained network inside a model file.
 struct ModelStage {
-  std::string kind;       ///< "text", "retriever", "tokenizer", "masked" or "residual"
+  std::string kind;       ///< "retriever", "tokenizer", "masked", "residual", "text-encoder", ...
   nlohmann::json config;  ///< everything needed to build it again (preset, sizes, statistics' mode)
   TensorMap tensors;
 };
@@ -48,6 +48,10 @@ std::string stage_hash(const ModelStage& stage);
 
 /// Parameters and buffers of a module by name (copies).
 TensorMap module_tensors(const torch::nn::Module& module);
+
+/// Sets every parameter and buffer that has a tensor of its name and shape; returns the names of
+/// the others, which stay as they are.
+std::vector<std::string> load_fitting_tensors(torch::nn::Module& module, const TensorMap& tensors);
 
 /// Sets every parameter and buffer; throws Error when a tensor is missing, too
 /// many, or of another shape: nothing is loaded silently.

@@ -39,12 +39,11 @@ AddReport add_motion_files(const std::string& database, std::span<const std::str
 
 IndexReport index_database(const std::string& database_path, const std::string& model,
                            const Monitor& monitor) {
-  const retriever::Retriever retriever(nn::load_stage(model, "retriever"));
+  const retriever::Retriever retriever = retriever::open_retriever(model);
   db::Database database(database_path, db::OpenMode::read_write);
   IndexReport report;
   report.embedded = retriever::embed_database(database, retriever, monitor);
-  const auto encoder = encoders::SentenceEncoder::open(search::text_file_of(model));
-  search::embed_captions(database, encoder, monitor);
+  search::embed_captions(database, *retriever.words(), monitor);
   report.indexed = index::update_index(index::default_index_path(database_path), database,
                                        retriever.hash(), {}, monitor)
                        .count;

@@ -194,9 +194,10 @@ struct Generator::Impl {
 Generator::Generator(std::shared_ptr<const retriever::Retriever> retriever,
                      const std::map<std::string, nn::ModelStage>& stages)
     : impl_(std::make_unique<Impl>(std::move(retriever), stages)) {}
-Generator::Generator(const std::map<std::string, nn::ModelStage>& stages)
+Generator::Generator(const std::map<std::string, nn::ModelStage>& stages,
+                     std::shared_ptr<const encoders::SentenceEncoder> words)
     : Generator(std::make_shared<retriever::Retriever>(
-                    nn::require_stage(stages, "retriever", "the model")),
+                    nn::require_stage(stages, "retriever", "the model"), std::move(words)),
                 stages) {}
 Generator::~Generator() = default;
 Generator::Generator(Generator&&) noexcept = default;

@@ -65,7 +65,8 @@ class Generator {
   /// Needs the stages retriever, tokenizer, masked and residual (the last one
   /// only where the tokenizer has several levels). Throws Error when one lacks
   /// or when their sizes do not fit together.
-  explicit Generator(const std::map<std::string, nn::ModelStage>& stages);
+  Generator(const std::map<std::string, nn::ModelStage>& stages,
+            std::shared_ptr<const encoders::SentenceEncoder> words);
   /// The same with a retriever that is loaded already.
   Generator(std::shared_ptr<const retriever::Retriever> retriever,
             const std::map<std::string, nn::ModelStage>& stages);

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "base/process_settings.h"
 #include "db/database.h"
+#include "encoders/text_file.h"
 #include "nn/model_file.h"
 #include "nn/threads.h"
 #include "pipeline/candidate_list.h"
@@ -99,6 +100,7 @@ std::vector<EditedCells> edited_cells(const motion::PartMask& mask) {
 struct TextToMotion::Impl {
   std::string model_path, database_path;
   OpenOptions options;
+  std::shared_ptr<search::WordModel> words;
   std::shared_ptr<const retriever::Retriever> retriever;
   std::string database_uuid;
   std::unique_ptr<const search::MotionSearch> opened_search;  // none without retrieval
@@ -109,14 +111,14 @@ struct TextToMotion::Impl {
       : model_path(model_file),
         database_path(database_file),
         options(open),
-        retriever(std::make_shared<retriever::Retriever>(nn::load_stage(model_file, "retriever"))),
+        words(std::make_shared<search::WordModel>(search::WordModel::open(
+            options.text.empty() ? encoders::text_file_of(model_file) : options.text))),
+        retriever(std::make_shared<retriever::Retriever>(
+            retriever::open_retriever(model_file, words->encoder))),
         database_uuid(db::Database(database_file, db::OpenMode::read_only).uuid()) {
     if (!options.retrieval) return;
-    const std::string text_file =
-        options.text.empty() ? search::text_file_of(model_file) : options.text;
-    opened_search = std::make_unique<search::MotionSearch>(
-        retriever, std::make_shared<search::WordModel>(search::WordModel::open(text_file)),
-        database_file, open.index);
+    opened_search =
+        std::make_unique<search::MotionSearch>(retriever, words, database_file, open.index);
   }
 
   const search::MotionSearch& search() const {

@@ -35,6 +35,10 @@ RetrieverConfig retriever_preset(ModelSize size) {
       config.hidden = 64;
       config.embedding = 64;
       config.part_embedding = 16;
+      config.text_width = 64;
+      config.text_layers = 1;
+      config.text_heads = 2;
+      config.text_hidden = 128;
       break;
     case ModelSize::small:
       config.width = 64;
@@ -42,6 +46,8 @@ RetrieverConfig retriever_preset(ModelSize size) {
       config.hidden = 128;
       config.embedding = 128;
       config.part_embedding = 32;
+      config.text_width = 128;
+      config.text_hidden = 256;
       break;
     case ModelSize::base:
     case ModelSize::momask:
@@ -53,6 +59,10 @@ RetrieverConfig retriever_preset(ModelSize size) {
       config.hidden = 1024;
       config.dropout = 0.5;
       config.embedding = 512;
+      config.text_width = 512;
+      config.text_layers = 4;
+      config.text_heads = 8;
+      config.text_hidden = 1024;
       break;
   }
   config.preset = size_name(size);
@@ -66,8 +76,12 @@ void use_whole_body_encoder(RetrieverConfig& config) {
   config.hidden = config.hidden * 5 / 2;
 }
 
-RetrieverConfig read_retriever_config(nlohmann::json json) {
-  json.emplace("encoders", RetrieverConfig().encoders);
+RetrieverConfig read_retriever_config(const nlohmann::json& json) {
+  if (json.contains("text_tower")) {
+    throw Error(
+        "the model was trained by version 0.2 or older, whose retriever had a text encoder of its "
+        "own; train it again, or use the model of this version");
+  }
   return json.get<RetrieverConfig>();
 }
 

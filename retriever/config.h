@@ -27,7 +27,15 @@ struct RetrieverConfig {
   int64_t part_embedding = 64;                               ///< P
   /// Motion encoders: one a body part, or 1 that reads the whole body.
   int64_t encoders = 6;
-  nlohmann::json text_tower;  ///< of TextTower::config(); empty: made by the training
+  /// The transformer that reads the states of the sentence encoder's words (TextReader).
+  int64_t text_width = 256, text_layers = 2, text_heads = 4, text_hidden = 512;
+  double text_dropout = 0.1;
+  /// Last layers of the sentence encoder that the retriever trains, as a copy of its own.
+  int64_t tuned_text_layers = 0;
+  /// Identity of the sentence encoder, SentenceEncoder::tower_hash(), and its width; empty: set by
+  /// the training.
+  std::string text_encoder;
+  int64_t text_encoder_width = 0;
 };
 
 /// The sizes of a retriever. MoMask's published sizes go with the base retriever.
@@ -40,9 +48,11 @@ void use_whole_body_encoder(RetrieverConfig& config);
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RetrieverConfig, preset, skeleton, mode, patch, width, layers,
                                    heads, hidden, dropout, embedding, part_embedding, encoders,
-                                   text_tower)
+                                   text_width, text_layers, text_heads, text_hidden, text_dropout,
+                                   tuned_text_layers, text_encoder, text_encoder_width)
 
-/// The configuration in a model file, also in one written before `encoders` existed.
-RetrieverConfig read_retriever_config(nlohmann::json json);
+/// The configuration in a model file. Throws Error for one of version 0.2 and older, whose text
+/// tower was the retriever's own.
+RetrieverConfig read_retriever_config(const nlohmann::json& json);
 
 }  // namespace remomask::retriever

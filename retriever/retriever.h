@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "encoders/sentence_encoder.h"
 #include "motion/features.h"
 #include "nn/model_file.h"
 
 namespace remomask::retriever {
 
 struct TextEncoding {
-  at::Tensor states;  ///< [B, S, text_width] token states of the text tower
+  at::Tensor states;  ///< [B, S, text_width] of the word pieces, by the sentence encoder
   at::Tensor mask;    ///< [B, S] bool, true where a token exists
   at::Tensor query;   ///< [B, E] vector in the shared space, L2-normalised
   at::Tensor parts;   ///< [B, 6, P] what the words say about each part, each L2-normalised
@@ -23,13 +24,14 @@ struct MotionEncoding {
   at::Tensor parts;   ///< [B, 6, P] part vectors, each L2-normalised
 };
 
-/// A trained retriever (text tower and six-part motion encoder) for inference.
-/// Results of a text or clip do not depend on what it is batched with (1e-4).
-/// Const functions may be called from several threads.
+/// A trained retriever (text reader over a sentence encoder, six-part motion encoder) for
+/// inference. Results of a text or clip do not depend on what it is batched with (1e-4). Const
+/// functions may be called from several threads.
 class Retriever {
  public:
-  /// Throws Error when the stage is no retriever or its tensors do not fit.
-  explicit Retriever(const nn::ModelStage& stage);
+  /// Throws Error when the stage is no retriever, its tensors do not fit, or it was trained over
+  /// another sentence encoder.
+  Retriever(const nn::ModelStage& stage, std::shared_ptr<const encoders::SentenceEncoder> words);
   ~Retriever();
   Retriever(Retriever&&) noexcept;
   Retriever& operator=(Retriever&&) noexcept;
@@ -43,10 +45,19 @@ class Retriever {
   int64_t text_width() const;       ///< width of TextEncoding::states
   motion::FeatureMode feature_mode() const;
   const std::string& hash() const;  ///< stage_hash: identity in Database::embeddings
+  const std::shared_ptr<const encoders::SentenceEncoder>& words() const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The retriever of a model or stage file over the sentence encoder of a text file; empty: that
+/// beside the model (text_file_of()). Throws FileError as nn::load_stage() and
+/// SentenceEncoder::open() do.
+Retriever open_retriever(const std::string& model_path, const std::string& text_path = "");
+/// The same over a sentence encoder that is open already.
+Retriever open_retriever(const std::string& model_path,
+                         std::shared_ptr<const encoders::SentenceEncoder> words);
 
 }  // namespace remomask::retriever

@@ -4,22 +4,35 @@
 
 namespace remomask::retriever {
 
-RetrieverModel::RetrieverModel(const RetrieverConfig& config)
+RetrieverModel::RetrieverModel(const RetrieverConfig& config,
+                               std::shared_ptr<encoders::TextTower> tower)
     : config_(config),
-      tower_(register_module("text_tower", encoders::make_text_tower(config.text_tower))),
+      tower_(std::move(tower)),
+      reader_(register_module("text_reader",
+                              std::make_shared<TextReader>(config, config.text_encoder_width))),
       motion_(register_module("motion", std::make_shared<MotionEncoder>(config))),
       text_head_(register_module(
           "text_head",
-          std::make_shared<ProjectionHead>(tower_->width(), config.embedding, config.dropout))),
+          std::make_shared<ProjectionHead>(config.text_width, config.embedding, config.dropout))),
       text_parts_(register_module(
           "text_parts",
-          torch::nn::Linear(tower_->width(), motion::kBodyParts * config.part_embedding))) {}
+          torch::nn::Linear(config.text_width, motion::kBodyParts * config.part_embedding))) {
+  if (config.tuned_text_layers > 0) {
+    tail_ = register_module("text_tail", tower_->tail(config.tuned_text_layers));
+  }
+}
 
 TextVectors RetrieverModel::encode_text(const at::Tensor& ids, const at::Tensor& mask) {
-  const encoders::TextStates text = tower_->encode(ids, mask);
-  return {text.states, text_head_->forward(text.pooled),
-          unit_rows(
-              text_parts_(text.pooled).unflatten(1, {motion::kBodyParts, config_.part_embedding}))};
+  at::Tensor states;
+  {
+    const at::NoGradGuard frozen;
+    states = tower_->encode_below(ids, mask, config_.tuned_text_layers);
+  }
+  if (tail_) states = tail_->forward(states, mask);
+  const at::Tensor pooled = reader_->forward(states, mask);
+  return {
+      states, text_head_->forward(pooled),
+      unit_rows(text_parts_(pooled).unflatten(1, {motion::kBodyParts, config_.part_embedding}))};
 }
 
 }  // namespace remomask::retriever

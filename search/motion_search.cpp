@@ -217,12 +217,6 @@ MotionSearch::MotionSearch(std::shared_ptr<const retriever::Retriever> retriever
                            const std::string& index_path)
     : impl_(std::make_unique<Impl>(std::move(retriever), std::move(words), database_path,
                                    index_path)) {}
-MotionSearch::MotionSearch(const std::string& model_path, const std::string& text_path,
-                           const std::string& database_path, const std::string& index_path)
-    : MotionSearch(
-          std::make_shared<retriever::Retriever>(nn::load_stage(model_path, "retriever")),
-          text_path.empty() ? nullptr : std::make_shared<WordModel>(WordModel::open(text_path)),
-          database_path, index_path) {}
 MotionSearch::~MotionSearch() = default;
 MotionSearch::MotionSearch(MotionSearch&&) noexcept = default;
 MotionSearch& MotionSearch::operator=(MotionSearch&&) noexcept = default;

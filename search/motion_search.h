@@ -37,10 +37,6 @@ class MotionSearch {
   MotionSearch(std::shared_ptr<const retriever::Retriever> retriever,
                std::shared_ptr<const WordModel> words, const std::string& database_path,
                const std::string& index_path = "");
-  /// The same with the retriever of a model file and the encoder of a text file; none where
-  /// `text_path` is empty.
-  MotionSearch(const std::string& model_path, const std::string& text_path,
-               const std::string& database_path, const std::string& index_path = "");
   ~MotionSearch();
   MotionSearch(MotionSearch&&) noexcept;
   MotionSearch& operator=(MotionSearch&&) noexcept;

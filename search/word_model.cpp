@@ -1,10 +1,7 @@
 #include "search/word_model.h"
 
-#include <filesystem>
-
 #include "nn/model_file.h"
 #include "remomask/error.h"
-#include "remomask/library.h"
 
 namespace remomask::search {
 
@@ -41,14 +38,6 @@ void store_word_score(const std::string& path, const WordScore& score) {
   }
   stages.push_back({kScoreStage, score, {}});
   nn::save_model(path, stages, true);
-}
-
-std::string text_file_of(const std::string& model_path) {
-  const auto beside = std::filesystem::path(model_path).replace_filename("text.safetensors");
-  // In the folder of a training lies the stage of the model's own text tower under this name.
-  const bool is_encoder = std::filesystem::exists(beside) &&
-                          nn::has_stage(beside.string(), encoders::kTextEncoderStage);
-  return is_encoder ? beside.string() : shipped_file("text.safetensors");
 }
 
 }  // namespace remomask::search

@@ -21,8 +21,4 @@ struct WordModel {
 /// Puts the score into a text file in place of the one that it has.
 void store_word_score(const std::string& path, const WordScore& score);
 
-/// Where the text file of a model is: "text.safetensors" beside the model if that holds a sentence
-/// encoder, else the shipped one.
-std::string text_file_of(const std::string& model_path);
-
 }  // namespace remomask::search

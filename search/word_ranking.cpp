@@ -6,7 +6,7 @@
 #include "search/caption_table.h"
 #include "text/caption.h"
 #include "text/caption_mirror.h"
-#include "text/wordpiece.h"
+#include "text/words.h"
 
 namespace remomask::search {
 

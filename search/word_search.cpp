@@ -13,7 +13,7 @@
 #include "search/subject.h"
 #include "text/caption.h"
 #include "text/caption_mirror.h"
-#include "text/wordpiece.h"
+#include "text/words.h"
 
 namespace remomask::search {
 

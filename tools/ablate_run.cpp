@@ -5,6 +5,8 @@
 
 #include "base/file.h"
 #include "db/database.h"
+#include "encoders/sentence_encoder.h"
+#include "encoders/text_file.h"
 #include "evaluation/evaluator.h"
 #include "evaluation/retrieval_metrics.h"
 #include "lab/ablation_charts.h"
@@ -38,7 +40,7 @@ std::map<std::string, int64_t> stage_numbers(const std::vector<std::string>& wor
       numbers[word.substr(0, sign)] = number;
       continue;
     }
-    for (const char* stage : {"text", "retriever", "tokenizer", "masked", "residual"}) {
+    for (const char* stage : {"retriever", "tokenizer", "masked", "residual"}) {
       numbers[stage] = number;
     }
   }
@@ -118,8 +120,10 @@ void run_ablate(const AblateCommand& options, Program& program) {
       evaluation::load_evaluator(options.evaluator.evaluator_path());
   const lab::AblationClips clips =
       lab::load_ablation_clips(database, ablation.split, options.sources);
+  const std::string text_path = encoders::text_file_of(options.folder + "/stages/retriever");
   const std::string training = evaluation::clip_set_hash(clips.training.train) +
-                               evaluation::clip_set_hash(clips.training.val);
+                               evaluation::clip_set_hash(clips.training.val) +
+                               encoders::SentenceEncoder::open(text_path).tower_hash();
   const lab::AblationPlan plan = lab::plan_ablation(
       ablation, {training, training + evaluation::clip_set_hash(clips.asked) + judge.hash()});
   fs::create_directories(ablation.folder);

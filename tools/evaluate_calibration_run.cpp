@@ -34,7 +34,7 @@ double uncalibrated_error(const evaluation::JudgedHits& hits) {
 void run_evaluate_calibration(const EvaluateCalibrationCommand& command, Program& program) {
   const EvaluationInput& input = command.input;
   const std::string model_path = input.files.model_path();
-  const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
+  const retriever::Retriever retriever = retriever::open_retriever(model_path);
   const auto hits_of = [&](const std::string& split) {
     const auto clips = load_clips(input, split, retriever.feature_mode());
     return evaluation::judge_hits(

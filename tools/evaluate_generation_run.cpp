@@ -89,7 +89,7 @@ void run_evaluate_generation(const EvaluateGenerationCommand& options, Program& 
       evaluation::load_evaluator(options.evaluator.evaluator_path());
   const TextToMotion remomask = open_model(options.files, program);
   const db::Database database(options.files.database_path(), db::OpenMode::read_only);
-  const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
+  const retriever::Retriever retriever = retriever::open_retriever(model_path);
   const auto index =
       index::VectorIndex::open(index_path(options.files), database, retriever.hash());
   index.require_current(database);

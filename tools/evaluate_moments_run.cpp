@@ -37,7 +37,7 @@ void run_evaluate_moments(const EvaluateMomentsCommand& command, Program& progra
   if (command.share) moments.share = *command.share;
   if (command.resamples) bootstrap.resamples = *command.resamples;
   const std::string model_path = command.input.files.model_path();
-  const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
+  const retriever::Retriever retriever = retriever::open_retriever(model_path);
   const auto clips = load_clips(command.input, command.input.split, retriever.feature_mode());
   const evaluation::MomentEvaluation result =
       evaluation::measure_moments(retriever, clips, tasks, moments, bootstrap, program.monitor());

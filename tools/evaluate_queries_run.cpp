@@ -33,7 +33,7 @@ void run_evaluate_queries(const EvaluateQueriesCommand& command, Program& progra
   evaluation::BootstrapOptions bootstrap;
   if (command.resamples) bootstrap.resamples = *command.resamples;
   const std::string model_path = command.input.files.model_path();
-  const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
+  const retriever::Retriever retriever = retriever::open_retriever(model_path);
   const auto clips = load_clips(command.input, command.input.split, retriever.feature_mode());
   const evaluation::QueryRobustness result =
       evaluation::measure_query_robustness(retriever, clips, bootstrap, program.monitor());

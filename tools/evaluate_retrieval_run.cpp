@@ -80,7 +80,7 @@ void run_evaluate_retrieval(const EvaluateRetrievalCommand& command, Program& pr
     measure.protocols.push_back(evaluation::parse_retrieval_protocol(name));
   }
   const std::string model_path = command.input.files.model_path();
-  const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
+  const retriever::Retriever retriever = retriever::open_retriever(model_path);
   const auto clips = load_clips(command.input, command.input.split, retriever.feature_mode());
   const evaluation::RetrievalEvaluation result =
       evaluation::evaluate_retrieval(retriever, clips, measure, program.monitor());

@@ -73,9 +73,9 @@ void run_evaluate_search(const EvaluateSearchCommand& command, Program& program)
   const auto prompts = evaluation::read_search_prompts(command.prompts);
   const std::string model_path = command.files.model_path();
   const std::string text_path = text_file(command.files);
-  const auto retriever =
-      std::make_shared<const retriever::Retriever>(nn::load_stage(model_path, "retriever"));
   search::WordModel words = search::WordModel::open(text_path);
+  const auto retriever = std::make_shared<const retriever::Retriever>(
+      retriever::open_retriever(model_path, words.encoder));
   if (!words.score) {
     if (!command.fit) {
       throw FileError(text_path, 0, "holds no search score; fit one on other prompts with --fit");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/counted.h"
+#include "encoders/text_file.h"
 #include "remomask/error.h"
 #include "search/word_model.h"
 
@@ -18,7 +19,7 @@ TextToMotion open_model(const FileOptions& files, const Program& program, bool r
 }
 
 std::string text_file(const FileOptions& files) {
-  return files.text.empty() ? search::text_file_of(files.model_path()) : files.text;
+  return files.text.empty() ? encoders::text_file_of(files.model_path()) : files.text;
 }
 
 void stop_after(int done, int count, uint64_t seed) {

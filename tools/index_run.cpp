@@ -44,13 +44,13 @@ nlohmann::json update_json(const FileOptions& files, int64_t embedded, int64_t c
 
 void run_index(const IndexCommand& command, Program& program) {
   const std::string model_path = command.files.model_path();
-  const retriever::Retriever retriever(nn::load_stage(model_path, "retriever"));
+  const retriever::Retriever retriever =
+      retriever::open_retriever(model_path, text_file(command.files));
   db::Database database(command.files.database_path(), db::OpenMode::read_write);
   const Monitor monitor = program.monitor();
   const int64_t embedded = retriever::embed_database(database, retriever, monitor);
-  const auto encoder = encoders::SentenceEncoder::open(text_file(command.files));
   if (command.rebuild) database.drop_unused_caption_vectors("");
-  const int64_t captions = search::embed_captions(database, encoder, monitor);
+  const int64_t captions = search::embed_captions(database, *retriever.words(), monitor);
   index::UpdateOptions update;
   update.rebuild = command.rebuild;
   if (command.factory || command.search_parameters) {

@@ -15,10 +15,9 @@ void register_train(CLI::App& app, Program& program) {
                   "remomask train all --db motions.sqlite --preset base -o run");
   command
       ->add_option("stage", options->stage,
-                   "text, retriever, tokenizer, masked, residual, all (of these), evaluator")
+                   "retriever, tokenizer, masked, residual, all (of these), evaluator")
       ->required()
-      ->check(CLI::IsMember(
-          {"text", "retriever", "tokenizer", "masked", "residual", "all", "evaluator"}));
+      ->check(CLI::IsMember({"retriever", "tokenizer", "masked", "residual", "all", "evaluator"}));
   command->add_option("--db", options->database, "database with splits train and val")->required();
   command->add_option("-o,--output", options->folder, "folder of the stage files")->required();
   command->add_option("--preset", options->preset, "sizes of all networks")
@@ -30,8 +29,25 @@ void register_train(CLI::App& app, Program& program) {
                    "(docs/training.md lists them), levels-N, quantizer-dropout-PERCENT")
       ->capture_default_str();
   command->add_option("--source", options->sources, "only these data sets (repeatable)");
-  command->add_option("--captions", options->captions,
-                      "more captions for the text encoder: JSON Lines with \"captions\"");
+  command
+      ->add_option("--text", options->text_file,
+                   "text file of the sentence encoder that the model reads sentences with, copied "
+                   "into the folder; default: the shipped one")
+      ->check(CLI::ExistingFile);
+  command
+      ->add_option("--tune-text-layers", options->tuned_text_layers,
+                   "retriever: last layers of the sentence encoder to train in a copy of its own")
+      ->capture_default_str()
+      ->check(at_least(0));
+  CLI::Option* start =
+      command
+          ->add_option("--from", options->start,
+                       "go on from the weights of this model, where their shapes fit")
+          ->check(CLI::ExistingFile);
+  command->add_option("--keep", options->kept, "with --from: stages that are taken as they are")
+      ->needs(start)
+      ->delimiter(',')
+      ->check(CLI::IsMember({"retriever", "tokenizer", "masked", "residual"}));
   command->add_option("--steps", options->steps, "steps; default: of the preset")
       ->check(at_least(1));
   command->add_option("--batch", options->batch, "clips a step; default: of the preset")

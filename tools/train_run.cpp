@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "base/file.h"
-#include "base/json.h"
+#include "encoders/sentence_encoder.h"
 #include "lab/variants.h"
 #include "remomask/error.h"
 #include "tools/train_command.h"
@@ -18,26 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Captions of JSON Lines files ({"captions": [...], "split": ...}); those of a
-/// test split are left out, as everywhere in training.
-void read_more_captions(const std::string& path, std::vector<std::string>& captions) {
-  const std::string content = read_file(path);
-  size_t begin = 0;
-  for (long line = 1; begin < content.size(); ++line) {
-    const size_t end = std::min(content.find('\n', begin), content.size());
-    const std::string text = content.substr(begin, end - begin);
-    begin = end + 1;
-    if (text.find_first_not_of(" \r\t") == std::string::npos) continue;
-    try {
-      const auto entry = parse_json(text);
-      if (entry.value("split", "") == "test") continue;
-      for (const auto& caption : entry.at("captions")) captions.push_back(caption);
-    } catch (const nlohmann::json::exception& error) {
-      throw FileError(path, line, "is not a line with \"captions\": " + json_reason(error));
-    }
-  }
-}
-
 /// The recipe with what the user wants otherwise, the same for every stage.
 training::TrainingRecipe chosen_recipe(const TrainCommand& options) {
   training::TrainingRecipe recipe = training::training_recipe(parse_preset(options.preset));
@@ -46,6 +26,17 @@ training::TrainingRecipe chosen_recipe(const TrainCommand& options) {
   if (options.same_label_weight) {
     recipe.retriever_training.same_meaning_weight = *options.same_label_weight;
   }
+  if (!options.start.empty()) {
+    const auto stages = nn::load_model(options.start);
+    const auto start = [&](const char* stage) -> std::optional<nn::ModelStage> {
+      const auto found = stages.find(stage);
+      return found == stages.end() ? std::nullopt : std::optional(found->second);
+    };
+    recipe.retriever_training.start = start("retriever");
+    recipe.masked_training.start = start("masked");
+    recipe.residual_training.start = start("residual");
+  }
+  recipe.model.retriever.tuned_text_layers = options.tuned_text_layers;
   lab::apply_variant(recipe, options.variant);
   for (const std::string& stage : training::recipe_stages(recipe)) {
     training::TrainerOptions& trainer = training::stage_trainer(recipe, stage);
@@ -57,10 +48,18 @@ training::TrainingRecipe chosen_recipe(const TrainCommand& options) {
   return recipe;
 }
 
-training::TrainingSplits load_clips(const TrainCommand& options) {
-  training::TrainingSplits splits = training::load_splits(options.database, options.sources);
-  for (const std::string& path : options.captions) read_more_captions(path, splits.more_captions);
-  return splits;
+/// Puts what the stages build on into the folder: the sentence encoder, and the stages of --from
+/// that are kept. Files that are there stay.
+void prepare_folder(const TrainCommand& options, const training::StageFile& file) {
+  fs::create_directories(options.folder);
+  if (!options.text_file.empty() && !fs::exists(file("text"))) {
+    const auto words = encoders::SentenceEncoder::open(options.text_file);  // refuses other files
+    write_file_atomically(file("text"), read_file(options.text_file));
+  }
+  for (const std::string& stage : options.kept) {
+    if (!fs::exists(file(stage)))
+      nn::save_model(file(stage), {nn::load_stage(options.start, stage)});
+  }
 }
 
 /// Trains the evaluator, which is no part of a model.
@@ -90,11 +89,11 @@ void print_trained(const std::string& path, Program& program) {
 }  // namespace
 
 void run_train(const TrainCommand& options, Program& program) {
-  const training::TrainingSplits clips = load_clips(options);
+  const training::TrainingSplits clips = training::load_splits(options.database, options.sources);
   const training::StageFile file = [&](const std::string& stage) {
     return (fs::path(options.folder) / (stage + ".safetensors")).string();
   };
-  fs::create_directories(options.folder);
+  prepare_folder(options, file);
   if (options.stage == "evaluator") {
     train_judge(options, clips, file("evaluator"), program.monitor());
     program.finish_progress();

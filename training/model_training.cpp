@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "db/database.h"
+#include "encoders/text_file.h"
 #include "nn/model_file.h"
 #include "pipeline/stage_gate.h"
 #include "remomask/error.h"
@@ -19,23 +20,12 @@ Options with_checkpoint(Options options, const std::string& path) {
   return options;
 }
 
-nn::ModelStage trained_text(const TrainingRecipe& recipe, const std::string& checkpoint,
-                            const TrainingSplits& clips, const Monitor& monitor) {
-  std::vector<std::string> captions;
-  for (const db::TrainingClip& clip : clips.train) {
-    captions.insert(captions.end(), clip.captions.begin(), clip.captions.end());
-  }
-  captions.insert(captions.end(), clips.more_captions.begin(), clips.more_captions.end());
-  return train_text_encoder(captions, recipe.text,
-                            with_checkpoint(recipe.text_training, checkpoint), monitor);
-}
-
 nn::ModelStage trained_retriever(const TrainingRecipe& recipe, const std::string& checkpoint,
                                  const StageFile& file, const TrainingSplits& clips,
                                  const Monitor& monitor) {
-  std::optional<nn::ModelStage> text;
-  if (fs::exists(file("text"))) text = nn::load_stage(file("text"), "text");
-  return train_retriever(clips.train, clips.val, text, recipe.model.retriever,
+  const auto words = std::make_shared<const encoders::SentenceEncoder>(
+      encoders::SentenceEncoder::open(encoders::text_file_of(file("retriever"))));
+  return train_retriever(clips.train, clips.val, words, recipe.model.retriever,
                          with_checkpoint(recipe.retriever_training, checkpoint), monitor);
 }
 
@@ -55,7 +45,7 @@ TrainingSplits load_splits(const std::string& database_path,
     }
     return clips;
   };
-  return {load("train"), load("val"), {}};
+  return {load("train"), load("val")};
 }
 
 const GeneratorData& GeneratorDataCache::get(const std::string& tokenizer_file,
@@ -64,7 +54,7 @@ const GeneratorData& GeneratorDataCache::get(const std::string& tokenizer_file,
   const std::string files = tokenizer_file + "\n" + retriever_file;
   if (!data_ || files_ != files) {
     const tokenizer::Tokenizer tokenizer(nn::load_stage(tokenizer_file, "tokenizer"));
-    const retriever::Retriever retriever(nn::load_stage(retriever_file, "retriever"));
+    const retriever::Retriever retriever = retriever::open_retriever(retriever_file);
     data_ = prepare_generator_data(clips.train, clips.val, tokenizer, retriever, monitor);
     files_ = files;
   }
@@ -79,9 +69,7 @@ void train_stage(const TrainingRecipe& recipe, const std::string& stage, const S
     return prepared.get(file("tokenizer"), file("retriever"), clips, monitor);
   };
   nn::ModelStage result;
-  if (stage == "text") {
-    result = trained_text(recipe, checkpoint, clips, monitor);
-  } else if (stage == "retriever") {
+  if (stage == "retriever") {
     result = trained_retriever(recipe, checkpoint, file, clips, monitor);
   } else if (stage == "tokenizer") {
     result = train_tokenizer(clips.train, clips.val, recipe.model.tokenizer,
@@ -108,10 +96,9 @@ void join_stages(const TrainingRecipe& recipe, const StageFile& file, const Trai
   for (const std::string& name : recipe_stages(recipe)) {
     // A run that was killed between writing the stage and this left it.
     fs::remove(file(name) + ".checkpoint");
-    if (name == "text") continue;
     nn::ModelStage stage = nn::load_stage(file(name), name);
     if (name == "masked" && generator::masked_config(stage.config).max_hits > 0) {
-      const retriever::Retriever retriever(nn::load_stage(file("retriever"), "retriever"));
+      const retriever::Retriever retriever = retriever::open_retriever(file("retriever"));
       const auto gate = training::measure_gate(retriever, clips.train, clips.val, monitor);
       if (gate) pipeline::set_stage_gate(stage, *gate);
     }

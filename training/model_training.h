@@ -13,7 +13,6 @@ namespace remomask::training {
 /// The clips that models are trained and validated on.
 struct TrainingSplits {
   std::vector<db::TrainingClip> train, val;
-  std::vector<std::string> more_captions;  ///< for the text stage besides those of `train`
 };
 
 /// Reads the splits "train" (with mirror twins) and "val" of a database; `sources`: only these
@@ -33,17 +32,17 @@ class GeneratorDataCache {
   std::optional<GeneratorData> data_;
 };
 
-/// File of a stage ("text", "retriever", ...).
+/// File of a stage ("retriever", "tokenizer", ...).
 using StageFile = std::function<std::string(const std::string& stage)>;
 
-/// Trains one stage of a recipe and writes its file; reads the files of the
-/// stages it builds on (a missing text stage: the retriever's tower starts
-/// fresh). Its config holds under "recipe" how it was trained. The checkpoint beside the file lets
-/// a stopped run go on. Throws Interrupted when asked to stop, Error for what the training refuses.
+/// Trains one stage of a recipe and writes its file; reads the files of the stages it builds on,
+/// and the sentence encoder beside them (encoders::text_file_of()). Its config holds under "recipe"
+/// how it was trained. The checkpoint beside the file lets a stopped run go on. Throws Interrupted
+/// when asked to stop, Error for what the training refuses.
 void train_stage(const TrainingRecipe& recipe, const std::string& stage, const StageFile& file,
                  const TrainingSplits& clips, GeneratorDataCache& prepared, const Monitor& monitor);
 
-/// Puts the stages of a recipe but "text" into one model file in half precision, with the
+/// Puts the stages of a recipe into one model file in half precision, with the
 /// evidence gate of its retriever (measure_gate()) where it reads hits.
 void join_stages(const TrainingRecipe& recipe, const StageFile& file, const TrainingSplits& clips,
                  const std::string& model_path, const Monitor& monitor);

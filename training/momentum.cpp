@@ -12,13 +12,15 @@ namespace {
 
 constexpr double kLargestScale = 100;  // temperature 0.01, as in CLIP
 
-/// Hides words (not [CLS], [SEP] or pads) with probability `share`.
-at::Tensor hide_words(const encoders::TokenBatch& tokens, double share, int64_t mask_id) {
+/// Hides words (not special tokens or pads) with probability `share`.
+at::Tensor hide_words(const encoders::TokenBatch& tokens, double share,
+                      const encoders::TextTower& tower) {
   if (share <= 0) return tokens.ids;
-  const at::Tensor hidden = torch::rand(tokens.ids.sizes())
-                                .lt(share)
-                                .logical_and(tokens.ids.ge(text::WordPiece::kSpecialTokens));
-  return tokens.ids.masked_fill(hidden, mask_id);
+  at::Tensor hidden = torch::rand(tokens.ids.sizes()).lt(share);
+  for (const int64_t special : tower.special_ids()) {
+    hidden = hidden.logical_and(tokens.ids.ne(special));
+  }
+  return tokens.ids.masked_fill(hidden, tower.mask_id());
 }
 
 }  // namespace
@@ -63,14 +65,16 @@ void update_twin(torch::nn::Module& twin, torch::nn::Module& online, double mome
   for (auto& item : twin.named_buffers()) item.value().copy_(buffers[item.key()]);
 }
 
-BmmModel::BmmModel(const retriever::RetrieverConfig& config, retriever::Queues queues,
+BmmModel::BmmModel(const retriever::RetrieverConfig& config,
+                   std::shared_ptr<encoders::TextTower> tower, retriever::Queues queues,
                    int64_t queue_size, double momentum, double temperature,
                    double same_meaning_weight)
     : queues_(queues),
       momentum_(momentum),
       same_meaning_weight_(same_meaning_weight),
-      online_(register_module("online", std::make_shared<retriever::RetrieverModel>(config))),
-      twin_(register_module("twin", std::make_shared<retriever::RetrieverModel>(config))),
+      online_(
+          register_module("online", std::make_shared<retriever::RetrieverModel>(config, tower))),
+      twin_(register_module("twin", std::make_shared<retriever::RetrieverModel>(config, tower))),
       text_queue_(
           register_module("text_queue", std::make_shared<KeyQueue>(queue_size, config.embedding))),
       motion_queue_(register_module("motion_queue",
@@ -111,9 +115,8 @@ at::Tensor BmmModel::part_loss(const at::Tensor& motion, const at::Tensor& text,
 
 BmmLosses BmmModel::loss(const PairBatch& batch, double part_weight, double token_drop) {
   kept_ = make_keys(batch);
-  const at::Tensor ids = is_training()
-                             ? hide_words(batch.tokens, token_drop, online_->text_tower().mask_id())
-                             : batch.tokens.ids;
+  const at::Tensor ids = is_training() ? hide_words(batch.tokens, token_drop, online_->text_tower())
+                                       : batch.tokens.ids;
   const retriever::TextVectors text = online_->encode_text(ids, batch.tokens.mask);
   const retriever::MotionVectors motion = online_->motion_encoder().forward(batch.online_patches);
 

@@ -48,12 +48,14 @@ struct BmmLosses {
 /// temperature.
 class BmmModel final : public torch::nn::Module {
  public:
-  BmmModel(const retriever::RetrieverConfig& config, retriever::Queues queues, int64_t queue_size,
-           double momentum, double temperature, double same_meaning_weight);
+  /// `tower`: the sentence encoder that online model and twin share.
+  BmmModel(const retriever::RetrieverConfig& config, std::shared_ptr<encoders::TextTower> tower,
+           retriever::Queues queues, int64_t queue_size, double momentum, double temperature,
+           double same_meaning_weight);
 
   /// Loss of a batch, ( CE(q^m, [k^t | text queue]) + CE(q^t, [k^m | motion
   /// queue]) ) / 2 + part_weight x the same for the parts (HBM, batch keys
-  /// only). `token_drop`: share of words hidden from the online text tower.
+  /// only). `token_drop`: share of words hidden from the online model.
   /// Keeps the keys for after_step().
   BmmLosses loss(const PairBatch& batch, double part_weight, double token_drop);
   /// Moves the twin, then pushes the kept keys into the queues.

@@ -11,6 +11,7 @@
 #include "remomask/error.h"
 #include "text/caption.h"
 #include "training/momentum.h"
+#include "training/start_weights.h"
 #include "training/training_batches.h"
 
 namespace remomask::training {
@@ -27,18 +28,6 @@ int64_t text_identity(const std::string& text) {
 int64_t meaning_identity(const db::TrainingClip& clip) {
   return text_identity(clip.meaning.empty() ? "group " + std::to_string(clip.group)
                                             : "meaning " + clip.meaning);
-}
-
-nlohmann::json fresh_text_tower(const std::vector<db::TrainingClip>& clips,
-                                const std::string& preset) {
-  encoders::TextEncoderConfig config = encoders::text_encoder_preset(parse_preset(preset).size);
-  std::vector<std::string> captions;
-  for (const db::TrainingClip& clip : clips) {
-    for (const std::string& caption : clip.captions)
-      captions.push_back(text::normalise_caption(caption));
-  }
-  config.vocabulary = text::train_wordpiece(captions, config.vocabulary_size);
-  return config;
 }
 
 /// Draws the batches of a run: a function of seed and step alone.
@@ -128,7 +117,7 @@ nlohmann::json options_document(const RetrieverTrainingOptions& options) {
 
 nn::ModelStage train_retriever(const std::vector<db::TrainingClip>& train,
                                const std::vector<db::TrainingClip>& val,
-                               const std::optional<nn::ModelStage>& text_stage,
+                               const std::shared_ptr<const encoders::SentenceEncoder>& words,
                                retriever::RetrieverConfig config,
                                const RetrieverTrainingOptions& options, const Monitor& monitor) {
   const std::vector<db::TrainingClip> clips = captioned_clips(train),
@@ -137,29 +126,26 @@ nn::ModelStage train_retriever(const std::vector<db::TrainingClip>& train,
     throw Error("the retriever needs at least 2 training clips with captions, there are " +
                 std::to_string(clips.size()) + "; import a captions file");
   }
-  config.text_tower = text_stage ? text_stage->config : fresh_text_tower(clips, config.preset);
-  config.text_tower.erase("history");
-  config.text_tower.erase("recipe");
+  config.text_encoder = words->tower_hash();
+  config.text_encoder_width = words->width();
 
   torch::manual_seed(options.trainer.seed);
-  BmmModel model(config, options.queues, options.queue_size, options.momentum, options.temperature,
-                 options.same_meaning_weight);
-  if (text_stage) {
-    nn::load_module_tensors(model.online().text_tower(), text_stage->tensors, "text stage");
-  }
+  BmmModel model(config, words->tower(), options.queues, options.queue_size, options.momentum,
+                 options.temperature, options.same_meaning_weight);
   std::vector<const motion::Features*> features;
   for (const db::TrainingClip& clip : clips) features.push_back(&clip.features);
+  nlohmann::json start = start_from(model.online(), options.start);
   model.online().motion_encoder().set_statistics(features);
   update_twin(model.twin(), model.online(), 0);
 
   nlohmann::json identity = options_document(options);
   identity["config"] = config;
+  if (!start.empty()) identity["start"] = start;
   identity["train"] = db::training_set_identity(clips);
-  identity["text"] = text_stage ? nn::stage_hash(*text_stage) : "";
   Trainer trainer(model, options.trainer, identity);
   if (!val_clips.empty()) {
     trainer.set_validation(options.validation_every, [&](int64_t) {
-      const retriever::Retriever retriever(retriever_stage(model, config));
+      const retriever::Retriever retriever(retriever_stage(model, config), words);
       evaluation::RetrievalOptions measure;
       measure.protocols = {evaluation::RetrievalProtocol::duplicates};
       measure.bootstrap.resamples = 0;
@@ -190,6 +176,7 @@ nn::ModelStage train_retriever(const std::vector<db::TrainingClip>& train,
 
   nn::ModelStage stage = retriever_stage(model, config);
   stage.config["history"] = trainer.history();
+  if (!start.empty()) stage.config["start"] = start;
   return stage;
 }
 

@@ -12,18 +12,6 @@ bool has_published_size(ModelSize size) {
   return size == ModelSize::paper || size == ModelSize::momask;
 }
 
-TextTrainingOptions text_training_preset(ModelSize size) {
-  TextTrainingOptions options;
-  options.trainer.steps = 800;
-  if (size == ModelSize::tiny) {
-    options.trainer.steps = 40;
-    options.batch = 16;
-  } else if (size == ModelSize::small) {
-    options.trainer.steps = 500;
-  }
-  return options;
-}
-
 TokenizerTrainingOptions tokenizer_training_preset(ModelSize size) {
   TokenizerTrainingOptions options;
   if (size == ModelSize::tiny) {
@@ -87,14 +75,12 @@ nlohmann::json trainer_description(const TrainerOptions& options) {
 }
 
 nlohmann::json training_description(const TrainingRecipe& recipe, const std::string& stage) {
-  if (stage == "text") return {{"batch", recipe.text_training.batch}};
   if (stage == "retriever") return options_document(recipe.retriever_training);
   if (stage == "tokenizer") return options_document(recipe.tokenizer_training);
   return options_document(stage == "masked" ? recipe.masked_training : recipe.residual_training);
 }
 
 nlohmann::json stage_config(const TrainingRecipe& recipe, const std::string& stage) {
-  if (stage == "text") return recipe.text;
   if (stage == "retriever") return recipe.model.retriever;
   if (stage == "tokenizer") return recipe.model.tokenizer;
   if (stage == "masked") return recipe.model.masked;
@@ -108,8 +94,6 @@ TrainingRecipe training_recipe(const Preset& preset) {
   recipe.preset = preset_name(preset);
   recipe.model = model_preset(preset);
   const ModelSize size = preset.size;
-  recipe.text = encoders::text_encoder_preset(size);
-  recipe.text_training = text_training_preset(size);
   recipe.retriever_training = RetrieverTrainingOptions(size);
   recipe.tokenizer_training = tokenizer_training_preset(size);
   recipe.masked_training = transformer_preset(size, "masked", 5600, 2800);
@@ -118,19 +102,17 @@ TrainingRecipe training_recipe(const Preset& preset) {
 }
 
 std::vector<std::string> recipe_stages(const TrainingRecipe& recipe) {
-  std::vector<std::string> stages = {"text", "retriever", "tokenizer", "masked"};
+  std::vector<std::string> stages = {"retriever", "tokenizer", "masked"};
   if (recipe.model.tokenizer.levels > 1) stages.push_back("residual");
   return stages;
 }
 
 const TrainerOptions& stage_trainer(const TrainingRecipe& recipe, const std::string& stage) {
-  if (stage == "text") return recipe.text_training.trainer;
   if (stage == "retriever") return recipe.retriever_training.trainer;
   if (stage == "tokenizer") return recipe.tokenizer_training.trainer;
   if (stage == "masked") return recipe.masked_training.trainer;
   if (stage == "residual") return recipe.residual_training.trainer;
-  throw Error("there is no stage \"" + stage +
-              "\"; use text, retriever, tokenizer, masked or residual");
+  throw Error("there is no stage \"" + stage + "\"; use retriever, tokenizer, masked or residual");
 }
 
 TrainerOptions& stage_trainer(TrainingRecipe& recipe, const std::string& stage) {
@@ -146,7 +128,6 @@ void set_stage_steps(TrainingRecipe& recipe, const std::string& stage, int64_t s
 
 void set_stage_batch(TrainingRecipe& recipe, const std::string& stage, int64_t clips) {
   stage_trainer(recipe, stage);  // refuses unknown stages
-  if (stage == "text") recipe.text_training.batch = clips;
   if (stage == "retriever") recipe.retriever_training.batch = clips;
   if (stage == "tokenizer") {
     recipe.tokenizer_training.batch_frames = clips * recipe.tokenizer_training.window;

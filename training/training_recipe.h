@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "generator/sampling.h"
-#include "training/masked_words.h"
 #include "training/presets.h"
 #include "training/retriever_training.h"
 #include "training/tokenizer_training.h"
@@ -19,8 +18,6 @@ struct TrainingRecipe {
   std::string preset;
   std::string variant = "full";  ///< see variants.h
   ModelConfig model;
-  encoders::TextEncoderConfig text;
-  TextTrainingOptions text_training;
   RetrieverTrainingOptions retriever_training;
   TokenizerTrainingOptions tokenizer_training;
   TransformerTrainingOptions masked_training, residual_training;
@@ -30,8 +27,8 @@ struct TrainingRecipe {
 /// The recipe of a preset.
 TrainingRecipe training_recipe(const Preset& preset);
 
-/// The stages of the recipe in the order of training: text, retriever,
-/// tokenizer, masked, and residual unless there is one level only.
+/// The stages of the recipe in the order of training: retriever, tokenizer, masked, and residual
+/// unless there is one level only.
 std::vector<std::string> recipe_stages(const TrainingRecipe& recipe);
 
 /// How a stage is trained.

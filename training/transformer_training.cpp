@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "remomask/error.h"
 #include "training/masking.h"
+#include "training/start_weights.h"
 #include "training/token_loss.h"
 
 namespace remomask::training {
@@ -274,12 +275,16 @@ void fit_config(Config& config, const GeneratorData& data) {
 }
 
 /// Trains `model` in place; make_batch(members, step), logits_of(batch) and
-/// validate() are what tells the two transformers apart. Returns the history.
+/// validate() are what tells the two transformers apart. Returns what the stage's config says of
+/// it: the history, and where the weights came from.
 template <typename Model, typename MakeBatch, typename Logits, typename Validate>
 nlohmann::json run_training(Model& model, const GeneratorData& data,
                             const TransformerTrainingOptions& options, const Monitor& monitor,
                             MakeBatch make_batch, Logits logits_of, Validate validate) {
-  Trainer trainer(*model, options.trainer, run_identity(model->config(), data, options));
+  const nlohmann::json start = start_from(*model, options.start);
+  nlohmann::json identity = run_identity(model->config(), data, options);
+  if (!start.empty()) identity["start"] = start;
+  Trainer trainer(*model, options.trainer, identity);
   BatchSchedule schedule(data.train.clips, options.batch, options.trainer.seed);
   if (!data.val.clips.empty()) {
     trainer.set_validation(options.validate_every, [&](int64_t) { return validate(); });
@@ -290,7 +295,9 @@ nlohmann::json run_training(Model& model, const GeneratorData& data,
         return step_result(token_loss(logits_of(batch), batch.targets));
       },
       monitor);
-  return trainer.history();
+  nlohmann::json record = {{"history", trainer.history()}};
+  if (!start.empty()) record["start"] = start;
+  return record;
 }
 
 }  // namespace
@@ -309,7 +316,7 @@ nn::ModelStage train_masked(generator::MaskedConfig config, const GeneratorData&
   fit_config(config, data);
   torch::manual_seed(mix_seed(options.trainer.seed, 0x6d61736bu));
   generator::MaskedTransformer model(config);
-  const nlohmann::json history = run_training(
+  const nlohmann::json record = run_training(
       model, data, options, monitor,
       [&](const std::vector<size_t>& members, int64_t step) {
         return masked_batch(data, members, config, options, step);
@@ -319,7 +326,7 @@ nn::ModelStage train_masked(generator::MaskedConfig config, const GeneratorData&
       },
       [&] { return validate_masked(model, data, options); });
   nn::ModelStage stage = generator::masked_stage(model);
-  stage.config["history"] = history;
+  stage.config.update(record);
   return stage;
 }
 
@@ -335,7 +342,7 @@ nn::ModelStage train_residual(generator::ResidualConfig config, const GeneratorD
   config.levels = data.levels;
   torch::manual_seed(mix_seed(options.trainer.seed, 0x72657369u));
   generator::ResidualTransformer model(config);
-  const nlohmann::json history = run_training(
+  const nlohmann::json record = run_training(
       model, data, options, monitor,
       [&](const std::vector<size_t>& members, int64_t step) {
         return residual_batch(data, members, config, options, step);
@@ -346,7 +353,7 @@ nn::ModelStage train_residual(generator::ResidualConfig config, const GeneratorD
       },
       [&] { return validate_residual(model, data, options); });
   nn::ModelStage stage = generator::residual_stage(model);
-  stage.config["history"] = history;
+  stage.config.update(record);
   return stage;
 }
 

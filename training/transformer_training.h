@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "generator/masked_transformer.h"
 #include "generator/residual_transformer.h"
 #include "remomask/progress.h"
@@ -15,6 +17,8 @@ struct TransformerTrainingOptions {
   double unfamiliar_hits = 0.3;     ///< share of samples with TokenSplit::unfamiliar_hits
   double text_drop = 0.1;           ///< residual model: share of samples without text
   double history_corruption = 0.0;  ///< residual model: share of lower tokens made random
+  /// A transformer of this kind whose weights the training goes on from, where their shapes fit.
+  std::optional<nn::ModelStage> start;
   int64_t validate_every = 500;
   size_t validation_clips = 256;  ///< at most so many, evenly spread
 };

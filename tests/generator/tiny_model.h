@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/encoders/tiny_words.h"
 #include "tests/tokenizer/tokenizer_test_tools.h"
 #include "training/generator_data.h"
 #include "training/presets.h"
@@ -42,16 +43,16 @@ struct TinyModel {
     retriever_options.trainer = trainer("retriever");
     retriever_options.batch = 4;
     stages["retriever"] =
-        training::train_retriever(clips, {}, std::nullopt, config.retriever, retriever_options, {});
+        training::train_retriever(clips, {}, tiny_words(), config.retriever, retriever_options, {});
     training::TokenizerTrainingOptions tokenizer_options;
     tokenizer_options.trainer = trainer("tokenizer");
     tokenizer_options.window = 32;
     tokenizer_options.batch_frames = 256;
     stages["tokenizer"] =
         training::train_tokenizer(clips, clips, config.tokenizer, tokenizer_options, {});
-    data = training::prepare_generator_data(clips, {clips[0]},
-                                            tokenizer::Tokenizer(stages["tokenizer"]),
-                                            retriever::Retriever(stages["retriever"]), {});
+    data = training::prepare_generator_data(
+        clips, {clips[0]}, tokenizer::Tokenizer(stages["tokenizer"]),
+        retriever::Retriever(stages["retriever"], tiny_words()), {});
     training::TransformerTrainingOptions options;
     options.batch = 4;
     options.trainer = trainer("masked");

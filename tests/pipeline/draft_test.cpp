@@ -103,7 +103,7 @@ GenerateOptions following(double share) {
 }
 
 TEST(Draft, AMotionKeepsTheCodesThatItFollows) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   const auto hits = posed_hit();
   const at::Tensor codes = hit_codes(generator, *hits[0].poses);
   const pipeline::Generated half = generator.generate("a person walks", hits, following(0.5));
@@ -122,7 +122,7 @@ TEST(Draft, AMotionKeepsTheCodesThatItFollows) {
 }
 
 TEST(Draft, ADraftShorterThanTheMotionIsItsBeginning) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   const auto hits = posed_hit();
   GenerateOptions options = following(1);
   options.seconds = 14;  // several windows, the draft in the first
@@ -132,7 +132,7 @@ TEST(Draft, ADraftShorterThanTheMotionIsItsBeginning) {
 }
 
 TEST(Draft, KnownFramesAndTheirSeamsStay) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   const auto hits = posed_hit();
   pipeline::TokenCanvas canvas = generator.canvas(10);
   canvas.tokens.slice(0, 0, 4).fill_(5);
@@ -152,7 +152,7 @@ nlohmann::json toy_gate() {
 TEST(Draft, TheGateDecidesHowFarAHitIsFollowed) {
   auto stages = tiny_model().stages;
   stages.at("masked").config["evidence_gate"] = toy_gate();
-  const pipeline::Generator generator(stages);
+  const pipeline::Generator generator(stages, tiny_words());
   auto hits = posed_hit();
   const auto share = [&](double similarity) {
     hits[0].similarity = similarity;
@@ -169,7 +169,7 @@ TEST(Draft, TheGateDecidesHowFarAHitIsFollowed) {
 TEST(Draft, HitsThatTheGateDoesNotTrustAreNotRead) {
   auto stages = tiny_model().stages;
   stages.at("masked").config["evidence_gate"] = toy_gate();
-  const pipeline::Generator generator(stages);
+  const pipeline::Generator generator(stages, tiny_words());
   auto hits = posed_hit();
   hits.push_back(hits[0]);
   const auto tokens = [&](double first, double second, GenerateOptions options) {

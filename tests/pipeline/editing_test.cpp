@@ -55,7 +55,7 @@ double worst_bone_error(const Motion& motion, const Motion& before) {
 }
 
 TEST(EditMotion, OnlyTheNamedCellsChange) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   const Motion& before = foreign_walk();
   const std::vector<std::vector<pipeline::CellSpan>> edits = {
       {{20, 45, {}}},      // in between
@@ -88,7 +88,7 @@ TEST(EditMotion, OnlyTheNamedCellsChange) {
 }
 
 TEST(EditMotion, SamplesOnlyCellsWithFramesThatChange) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   const pipeline::Edited edited =
       pipeline::edit_motion(generator, foreign_walk(), {{6, 13, {4}}}, "a man waves", {});
   EXPECT_EQ(edited.tokens, 18 * 6);     // 70 frames fill 18 token frames
@@ -96,7 +96,7 @@ TEST(EditMotion, SamplesOnlyCellsWithFramesThatChange) {
 }
 
 TEST(EditMotion, ContinuesFromTheLastPose) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   const Motion& before = foreign_walk();
   EditOptions options;
   options.extend_frames = 33;
@@ -109,7 +109,7 @@ TEST(EditMotion, ContinuesFromTheLastPose) {
 }
 
 TEST(EditMotion, WhatCannotBeEditedIsAnError) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   const Motion& before = foreign_walk();
   const auto edit = [&](const std::vector<pipeline::CellSpan>& spans) {
     return pipeline::edit_motion(generator, before, spans, "a man waves", {});

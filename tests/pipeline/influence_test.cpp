@@ -11,7 +11,7 @@ namespace remomask {
 namespace {
 
 TEST(HitInfluence, TheHitThatIsFollowedDecides) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   auto hits = two_hits();
   hits[0].poses = motion::recover_motion(swinging_clips({40})[0].features, humanml_skeleton());
   GenerateOptions options;

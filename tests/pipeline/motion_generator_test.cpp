@@ -38,7 +38,7 @@ TEST(GeneratorData, ClipsBecomeTokensFeaturesAndNeighbours) {
     }
   }
   // Text features are those of the retriever, whatever they were encoded with.
-  const retriever::Retriever retriever(tiny_model().stages["retriever"]);
+  const retriever::Retriever retriever(tiny_model().stages["retriever"], tiny_words());
   const retriever::TextEncoding alone = retriever.encode_text({"a person walks"});
   const int64_t caption = data.train.clips[0].captions[0];
   EXPECT_LT((data.captions.query[caption] - alone.query[0]).abs().max().item<float>(), 1e-4f);
@@ -47,7 +47,7 @@ TEST(GeneratorData, ClipsBecomeTokensFeaturesAndNeighbours) {
 }
 
 TEST(Pipeline, MakesAMotionOfTheWantedLength) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   GenerateOptions options;
   options.seconds = 3;
   options.seed = 4;
@@ -68,7 +68,7 @@ TEST(Pipeline, MakesAMotionOfTheWantedLength) {
 }
 
 TEST(Pipeline, SameInputsSameMotionForAnyThreads) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   const auto hits = two_hits();
   GenerateOptions options;
   options.seed = 9;
@@ -83,7 +83,7 @@ TEST(Pipeline, SameInputsSameMotionForAnyThreads) {
 }
 
 TEST(Pipeline, WithoutRetrievalHitsAreNotRead) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   GenerateOptions options;
   options.use_retrieval = false;
   const pipeline::Generated with = generator.generate("a man waves", two_hits(), options);
@@ -113,7 +113,7 @@ TEST(Pipeline, LengthsAreExactOrEstimated) {
 }
 
 TEST(Pipeline, MakesEveryLengthExactly) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   GenerateOptions options;
   for (const double seconds : {1.0, 1.05, 2.1, 3.15, 9.8, 9.85, 25.3}) {
     options.seconds = seconds;
@@ -125,7 +125,7 @@ TEST(Pipeline, MakesEveryLengthExactly) {
 
 TEST(Pipeline, WrongInputsAreErrors) {
   auto stages = tiny_model().stages;
-  const pipeline::Generator generator(stages);
+  const pipeline::Generator generator(stages, tiny_words());
   auto hits = two_hits();
   hits[1].motion.pop_back();
   EXPECT_THROW(generator.generate("a man waves", hits), Error);

@@ -68,7 +68,7 @@ std::vector<pipeline::ScriptSegment> three_segments() {
 }
 
 TEST(GenerateScript, LengthsAreExactAndTheSameAgain) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   pipeline::ScriptOptions options;
   options.generate.seed = 5;
   const pipeline::ScriptMotion made =
@@ -98,7 +98,7 @@ TEST(GenerateScript, LengthsAreExactAndTheSameAgain) {
 }
 
 TEST(GenerateScript, OnlyTheSeamOfTheSegmentBeforeChanges) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   const auto tokens = [&](size_t count) {
     auto segments = three_segments();
     segments.resize(count);
@@ -111,7 +111,7 @@ TEST(GenerateScript, OnlyTheSeamOfTheSegmentBeforeChanges) {
 }
 
 TEST(GenerateScript, OneShortSentenceIsAPlainGeneration) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   GenerateOptions plain;
   plain.seconds = 2.0;
   plain.seed = 8;
@@ -124,7 +124,7 @@ TEST(GenerateScript, OneShortSentenceIsAPlainGeneration) {
 }
 
 TEST(GenerateScript, TheJudgeChoosesAmongCandidates) {
-  const pipeline::Generator generator(tiny_model().stages);
+  const pipeline::Generator generator(tiny_model().stages, tiny_words());
   pipeline::ScriptOptions options;
   const pipeline::ScriptMotion plain =
       pipeline::generate_script(generator, three_segments(), options);

@@ -102,8 +102,7 @@ TEST(MotionEncoder, RefusesWhatItCannotRead) {
 TEST(MotionEncoder, KeepsTokensApartAtTheStart) {
   at::NoGradGuard no_grad;
   torch::manual_seed(1);
-  retriever::RetrieverConfig config = retriever::retriever_preset(ModelSize::base);
-  config.text_tower = tiny_retriever_config().text_tower;
+  const retriever::RetrieverConfig config = retriever::retriever_preset(ModelSize::base);
   retriever::MotionEncoder encoder(config);
   const motion::Features clip = random_features(196, 1);
   for (const at::Tensor& states :

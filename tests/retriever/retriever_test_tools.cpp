@@ -3,8 +3,8 @@
 #include <torch/utils.h>
 
 #include "base/random.h"
-#include "encoders/text_tower.h"
 #include "retriever/retriever_model.h"
+#include "tests/encoders/tiny_words.h"
 
 namespace remomask {
 
@@ -50,19 +50,16 @@ std::vector<db::TrainingClip> separable_clips(int kinds, int repeats, uint64_t s
 
 retriever::RetrieverConfig tiny_retriever_config() {
   retriever::RetrieverConfig config = retriever::retriever_preset(ModelSize::tiny);
-  encoders::TextEncoderConfig text = encoders::text_encoder_preset(ModelSize::tiny);
-  std::vector<std::string> captions;
-  for (int kind = 0; kind < 24; ++kind) captions.push_back(caption_of_kind(kind));
-  text.vocabulary = text::train_wordpiece(captions, 300);
-  config.text_tower = text;
+  config.text_encoder = tiny_words()->tower_hash();
+  config.text_encoder_width = tiny_words()->width();
   return config;
 }
 
 retriever::Retriever untrained_retriever(uint64_t seed) {
-  torch::manual_seed(seed);
   const retriever::RetrieverConfig config = tiny_retriever_config();
-  retriever::RetrieverModel model(config);
-  return retriever::Retriever({"retriever", config, nn::module_tensors(model)});
+  torch::manual_seed(seed);
+  retriever::RetrieverModel model(config, tiny_words()->tower());
+  return {{"retriever", config, nn::module_tensors(model)}, tiny_words()};
 }
 
 }  // namespace remomask

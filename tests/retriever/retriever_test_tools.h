@@ -16,7 +16,7 @@ motion::Features random_features(int frames, uint64_t seed);
 /// own words, `repeats` clips a kind; every clip is a group of its own.
 std::vector<db::TrainingClip> separable_clips(int kinds, int repeats, uint64_t seed);
 
-/// Preset tiny with a text tower over the captions of separable_clips().
+/// Preset tiny over tiny_words().
 retriever::RetrieverConfig tiny_retriever_config();
 
 /// With random weights.

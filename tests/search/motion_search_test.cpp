@@ -42,7 +42,8 @@ class MotionSearchTest : public ::testing::Test {
 
   static void SetUpTestSuite() {
     folder_ = new TestFolder;
-    retriever_ = new retriever::Retriever(nn::load_stage(kModel, "retriever"));
+    retriever_ = new std::shared_ptr<const retriever::Retriever>(
+        std::make_shared<const retriever::Retriever>(retriever::open_retriever(kModel)));
     const std::string path = *folder_ / "motions.sqlite";
     {
       db::Database database(path, db::OpenMode::create);
@@ -56,10 +57,10 @@ class MotionSearchTest : public ::testing::Test {
         add_test_clip(database, clip, 20 + i);
       }
       store_random_vectors(database, 5);
-      index::VectorIndex::build(database, retriever_->hash()).save(path + ".index");
+      index::VectorIndex::build(database, (*retriever_)->hash()).save(path + ".index");
     }
     database_ = new db::Database(path, db::OpenMode::read_only);
-    search_ = new search::MotionSearch(kModel, "", path);
+    search_ = new search::MotionSearch(*retriever_, nullptr, path);
   }
   static void TearDownTestSuite() {
     delete search_;
@@ -69,8 +70,8 @@ class MotionSearchTest : public ::testing::Test {
   }
 
   static void store_random_vectors(db::Database& database, uint64_t seed) {
-    const auto width = static_cast<size_t>(retriever_->embedding_width());
-    const auto part_width = static_cast<size_t>(retriever_->part_width());
+    const auto width = static_cast<size_t>((*retriever_)->embedding_width());
+    const auto part_width = static_cast<size_t>((*retriever_)->part_width());
     std::vector<db::ClipEmbedding> embeddings;
     for (const db::Clip& clip : database.clips()) {
       const uint64_t own = seed * 1000 + static_cast<uint64_t>(clip.id);
@@ -82,14 +83,14 @@ class MotionSearchTest : public ::testing::Test {
       embedding.text = random_directions(1, static_cast<int>(width), own + 2);
       embeddings.push_back(std::move(embedding));
     }
-    database.store_embeddings(retriever_->hash(), embeddings);
+    database.store_embeddings((*retriever_)->hash(), embeddings);
   }
 
   static db::ClipEmbedding vectors_of(const std::string& name) {
-    return *database_->embedding(retriever_->hash(), *database_->find_name(name));
+    return *database_->embedding((*retriever_)->hash(), *database_->find_name(name));
   }
   static std::vector<float> encode(const std::string& text) {
-    return nn::float_vector(retriever_->encode_text({text}).query[0]);
+    return nn::float_vector((*retriever_)->encode_text({text}).query[0]);
   }
 
   using Similarity = std::function<double(const db::ClipEmbedding&)>;
@@ -100,7 +101,7 @@ class MotionSearchTest : public ::testing::Test {
                                                                    const SearchQuery& query,
                                                                    const Passes& passes) {
     std::vector<std::pair<double, int64_t>> scored;
-    for (const db::ClipEmbedding& clip : database_->embeddings(retriever_->hash())) {
+    for (const db::ClipEmbedding& clip : database_->embeddings((*retriever_)->hash())) {
       scored.emplace_back(-similarity(clip), clip.clip_id);
     }
     std::sort(scored.begin(), scored.end());
@@ -185,7 +186,7 @@ TEST_F(MotionSearchTest, FindsByBodyParts) {
   query.like_clip = "clip7";
   query.parts = {"arms", "left_leg"};
   const auto like = vectors_of("clip7");
-  const auto width = static_cast<size_t>(retriever_->part_width());
+  const auto width = static_cast<size_t>((*retriever_)->part_width());
   const auto parts = [&](const db::ClipEmbedding& clip) {
     double sum = 0;
     for (const size_t part : {0u, 4u, 5u}) {
@@ -366,8 +367,8 @@ TEST_F(MotionSearchTest, SeesWhatOthersHaveChanged) {
   add_test_clip(database, named_clip("old"));
   add_test_clip(database, named_clip("older"));
   store_random_vectors(database, 1);
-  index::VectorIndex::build(database, retriever_->hash()).save(path + ".index");
-  const search::MotionSearch search(kModel, "", path);
+  index::VectorIndex::build(database, (*retriever_)->hash()).save(path + ".index");
+  const search::MotionSearch search(*retriever_, nullptr, path);
   MotionQuery query;
   query.like_clip = "old";
   query.parts = {"arms"};
@@ -389,8 +390,8 @@ TEST_F(MotionSearchTest, ProbabilitiesAreThoseOfTheStoredCalibration) {
   db::Database database(path, db::OpenMode::create);
   for (const char* name : {"a", "b", "c", "d", "e"}) add_test_clip(database, named_clip(name));
   store_random_vectors(database, 3);
-  index::VectorIndex::build(database, retriever_->hash()).save(path + ".index");
-  const search::MotionSearch search(kModel, "", path);
+  index::VectorIndex::build(database, (*retriever_)->hash()).save(path + ".index");
+  const search::MotionSearch search(*retriever_, nullptr, path);
   MotionQuery query;
   query.text = "a person walks";
   const SearchAnswer plain = search.search(query);
@@ -404,7 +405,7 @@ TEST_F(MotionSearchTest, ProbabilitiesAreThoseOfTheStoredCalibration) {
   const double high = plain.hits[1].similarity, low = plain.hits[2].similarity;
   const search::Calibration calibration =
       search::fit_calibration({low - 1, low, low, high}, {false, false, true, true});
-  database.set_fact(search::calibration_fact(retriever_->hash()),
+  database.set_fact(search::calibration_fact((*retriever_)->hash()),
                     nlohmann::json(calibration).dump());
   query.min_probability.reset();
   const SearchAnswer answer = search.search(query);
@@ -425,7 +426,7 @@ TEST_F(MotionSearchTest, ProbabilitiesAreThoseOfTheStoredCalibration) {
   EXPECT_FALSE(search.search(like).hits.at(0).probability);
   like.min_probability = 0.5;
   EXPECT_NE(error_of([&] { search.search(like); }).find("sentences alone"), std::string::npos);
-  database.set_fact(search::calibration_fact(retriever_->hash()), "{]");
+  database.set_fact(search::calibration_fact((*retriever_)->hash()), "{]");
   query.min_probability.reset();
   EXPECT_NE(error_of([&] { search.search(query); }), "");
 }
@@ -454,7 +455,7 @@ TEST_F(MotionSearchTest, AnswersSeveralThreadsAlike) {
 }
 
 TEST_F(MotionSearchTest, StoredMotionsAndMomentsOfTheShippedDatabase) {
-  const search::MotionSearch shipped(kModel, "", kModels + "motions.sqlite");
+  const search::MotionSearch shipped(*retriever_, nullptr, kModels + "motions.sqlite");
   const db::Database database(kModels + "motions.sqlite", db::OpenMode::read_only);
   MotionQuery query;
   query.k = 1;
@@ -475,10 +476,10 @@ TEST_F(MotionSearchTest, StoredMotionsAndMomentsOfTheShippedDatabase) {
   jump.text = "a person jumps";
   jump.moments = true;
   jump.k = 3;
-  const at::Tensor text = retriever_->encode_text({jump.text}).query[0];
+  const at::Tensor text = (*retriever_)->encode_text({jump.text}).query[0];
   for (const MotionHit& hit : shipped.search(jump).hits) {
     const motion::Features features = motion::extract_features_all_frames(
-        database.motion(hit.clip.id), humanml_skeleton(), retriever_->feature_mode());
+        database.motion(hit.clip.id), humanml_skeleton(), (*retriever_)->feature_mode());
     const auto windows = search::moment_windows(features.frames);
     const search::Moment best =
         search::best_moments(text, windows, search::encode_moments(*retriever_, features, windows))

@@ -24,11 +24,11 @@ class WordSearchTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TestFolder;
-    retriever_ = new std::shared_ptr<const retriever::Retriever>(
-        std::make_shared<const retriever::Retriever>(
-            nn::load_stage(kShipped + "base.safetensors", "retriever")));
     words_ = new std::shared_ptr<const search::WordModel>(std::make_shared<search::WordModel>(
         search::WordModel::open(kShipped + "text.safetensors")));
+    retriever_ = new std::shared_ptr<const retriever::Retriever>(
+        std::make_shared<const retriever::Retriever>(
+            retriever::open_retriever(kShipped + "base.safetensors", (*words_)->encoder)));
     path_ = *folder_ / "motions.sqlite";
     db::Database database(path_, db::OpenMode::create);
     const std::map<std::string, std::vector<std::string>> clips = {

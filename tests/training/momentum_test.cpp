@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <torch/utils.h>
 
+#include "tests/encoders/tiny_words.h"
 #include "tests/retriever/retriever_test_tools.h"
 
 namespace remomask {
@@ -64,7 +65,7 @@ TEST(Bmm, KeysHaveNoDropoutNoGradientAndMoveAfterTheStep) {
   torch::manual_seed(1);
   retriever::RetrieverConfig config = tiny_retriever_config();
   config.dropout = 0.5;
-  training::BmmModel model(config, retriever::Queues::both, 8, 0.5, 0.07, 1);
+  training::BmmModel model(config, tiny_words()->tower(), retriever::Queues::both, 8, 0.5, 0.07, 1);
   model.train();
   const auto clips = separable_clips(3, 1, 1);
   const training::PairBatch batch = batch_of(clips, model.online());
@@ -97,7 +98,8 @@ TEST(Bmm, LossIsTheMeanOfBothDirectionsWithEachItsQueue) {
       newer(clips.begin() + 2, clips.end());
   for (const retriever::Queues queues : {retriever::Queues::none, retriever::Queues::motion,
                                          retriever::Queues::text, retriever::Queues::both}) {
-    training::BmmModel model(tiny_retriever_config(), queues, 8, 1.0, 0.1, 1);
+    training::BmmModel model(tiny_retriever_config(), tiny_words()->tower(), queues, 8, 1.0, 0.1,
+                             1);
     model.eval();
     model.loss(batch_of(older, model.online()), 0, 0);
     model.after_step();

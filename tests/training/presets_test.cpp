@@ -82,7 +82,7 @@ TEST(PresetsTest, OneRowWithoutRetrievalWorksFromEndToEnd) {
   model.masked.width = model.residual.width = 32;
   model.masked.heads = model.residual.heads = 2;
   model.masked.layers = model.residual.layers = 1;
-  const pipeline::Generator generator(TinyModel(model, captioned_clips()).stages);
+  const pipeline::Generator generator(TinyModel(model, captioned_clips()).stages, tiny_words());
   GenerateOptions generate;
   generate.seconds = 2.0;
   const pipeline::Generated made = generator.generate("a person walks", {}, generate);

@@ -8,8 +8,8 @@
 
 #include "evaluation/retrieval_metrics.h"
 #include "remomask/error.h"
+#include "tests/encoders/tiny_words.h"
 #include "tests/retriever/retriever_test_tools.h"
-#include "training/masked_words.h"
 #include "training/training_batches.h"
 
 namespace remomask {
@@ -52,7 +52,8 @@ TEST(RetrieverTraining, ResumedRunEqualsTheUninterrupted) {
   std::filesystem::remove(path);
   training::RetrieverTrainingOptions options = quick_options(6);
   const retriever::RetrieverConfig config = retriever::retriever_preset(ModelSize::tiny);
-  const nn::ModelStage whole = training::train_retriever(clips, clips, {}, config, options, {});
+  const nn::ModelStage whole =
+      training::train_retriever(clips, clips, tiny_words(), config, options, {});
 
   options.trainer.checkpoint_path = path;
   options.trainer.checkpoint_seconds = 0;
@@ -62,8 +63,10 @@ TEST(RetrieverTraining, ResumedRunEqualsTheUninterrupted) {
   monitor.progress = [&](const Progress& progress) {
     if (progress.done >= 1) stop.request_stop();
   };
-  EXPECT_THROW(training::train_retriever(clips, clips, {}, config, options, monitor), Interrupted);
-  const nn::ModelStage resumed = training::train_retriever(clips, clips, {}, config, options, {});
+  EXPECT_THROW(training::train_retriever(clips, clips, tiny_words(), config, options, monitor),
+               Interrupted);
+  const nn::ModelStage resumed =
+      training::train_retriever(clips, clips, tiny_words(), config, options, {});
   EXPECT_EQ(resumed.config, whole.config);
   ASSERT_EQ(resumed.tensors.size(), whole.tensors.size());
   for (const auto& [name, tensor] : whole.tensors) {
@@ -71,7 +74,7 @@ TEST(RetrieverTraining, ResumedRunEqualsTheUninterrupted) {
   }
   // Another run must not continue from it.
   options.queues = retriever::Queues::none;
-  EXPECT_THROW(training::train_retriever(clips, clips, {}, config, options, {}), Error);
+  EXPECT_THROW(training::train_retriever(clips, clips, tiny_words(), config, options, {}), Error);
   std::filesystem::remove(path);
 }
 
@@ -82,8 +85,8 @@ TEST(RetrieverTraining, ClipsOfOneMeaningWeighAsAskedFor) {
   const auto trained = [&](double weight, double rate) {
     options.same_meaning_weight = weight;
     options.trainer.learning_rate = rate;
-    return training::train_retriever(clips, {}, {}, retriever::retriever_preset(ModelSize::tiny),
-                                     options, {})
+    return training::train_retriever(clips, {}, tiny_words(),
+                                     retriever::retriever_preset(ModelSize::tiny), options, {})
         .tensors;
   };
   const auto equal = [](const auto& a, const auto& b) {
@@ -103,8 +106,9 @@ TEST(RetrieverTraining, ClipsOfOneMeaningWeighAsAskedFor) {
 TEST(RetrieverTraining, LearnsSeparableMotionsAndSurvivesTheFile) {
   const auto train = separable_clips(24, 8, 1), test = separable_clips(24, 2, 99);
   const nn::ModelStage stage = training::train_retriever(
-      train, {}, {}, retriever::retriever_preset(ModelSize::tiny), quick_options(150), {});
-  const retriever::Retriever retriever(stage);
+      train, {}, tiny_words(), retriever::retriever_preset(ModelSize::tiny), quick_options(150),
+      {});
+  const retriever::Retriever retriever(stage, tiny_words());
   evaluation::RetrievalOptions measure;
   measure.protocols = {evaluation::RetrievalProtocol::duplicates};
   const auto evaluation = evaluation::evaluate_retrieval(retriever, test, measure);
@@ -114,7 +118,7 @@ TEST(RetrieverTraining, LearnsSeparableMotionsAndSurvivesTheFile) {
 
   const std::string path = testing::TempDir() + "/retriever.safetensors";
   nn::save_model(path, {stage});
-  const retriever::Retriever loaded(nn::load_stage(path, "retriever"));
+  const retriever::Retriever loaded(nn::load_stage(path, "retriever"), tiny_words());
   std::filesystem::remove(path);
   EXPECT_EQ(loaded.hash(), retriever.hash());
   EXPECT_EQ(loaded.feature_mode(), motion::FeatureMode::fixed);
@@ -131,32 +135,53 @@ TEST(RetrieverTraining, LearnsSeparableMotionsAndSurvivesTheFile) {
   EXPECT_TRUE(torch::allclose(alone.query[0], words.query[1], 1e-4, 1e-4));
 }
 
-TEST(RetrieverTraining, StartsFromAPretrainedTower) {
-  const auto clips = separable_clips(12, 2, 1);
-  std::vector<std::string> captions;
-  for (const db::TrainingClip& clip : separable_clips(24, 1, 1))
-    captions.push_back(clip.captions[0]);
-  training::TextTrainingOptions text_options;
-  text_options.trainer.steps = 2;
-  const nn::ModelStage text = training::train_text_encoder(
-      captions, encoders::text_encoder_preset(ModelSize::tiny), text_options, {});
-  training::RetrieverTrainingOptions options = quick_options(1);
-  options.trainer.learning_rate = 0;
-  const nn::ModelStage stage = training::train_retriever(
-      clips, {}, text, retriever::retriever_preset(ModelSize::tiny), options, {});
-  EXPECT_EQ(stage.config["text_tower"]["vocabulary"], text.config["vocabulary"]);
-  EXPECT_TRUE(stage.tensors.at("text_tower.tokens.weight").equal(text.tensors.at("tokens.weight")));
+TEST(RetrieverTraining, LeavesTheSentenceEncoderAlone) {
+  const std::string before = tiny_words()->tower_hash();
+  const at::Tensor words = tiny_text_stage().tensors.at("words").clone();
+  const nn::ModelStage stage =
+      training::train_retriever(separable_clips(12, 2, 1), {}, tiny_words(),
+                                retriever::retriever_preset(ModelSize::tiny), quick_options(2), {});
+  EXPECT_TRUE(words.equal(tiny_text_stage().tensors.at("words")));
+  EXPECT_EQ(stage.config.at("text_encoder"), before);
+  EXPECT_EQ(stage.config.at("text_encoder_width"), tiny_words()->width());
+  for (const auto& [name, tensor] : stage.tensors) {
+    EXPECT_FALSE(name.starts_with("words") || name.starts_with("block")) << name;
+  }
+  // It reads what the encoder says of the words, whatever stands around them in a batch.
+  const retriever::Retriever retriever(stage, tiny_words());
+  const retriever::TextEncoding both = retriever.encode_text({"runs", "a person walks slowly"});
+  const encoders::TokenBatch tokens = tiny_words()->tower()->tokenize({"runs"});
+  const at::NoGradGuard no_grad;
+  const at::Tensor states = tiny_words()->tower()->encode(tokens.ids, tokens.mask).states[0];
+  EXPECT_TRUE(torch::allclose(both.states[0].slice(0, 0, states.size(0)), states, 1e-4, 1e-5));
+}
+
+TEST(RetrieverTraining, AnotherSentenceEncoderIsRefused) {
+  nn::ModelStage other = tiny_text_stage();
+  other.tensors["words"] = other.tensors["words"] + 1;
+  const auto words = std::make_shared<const encoders::SentenceEncoder>(
+      encoders::SentenceEncoder::of_stages({{encoders::kTextEncoderStage, other}}, "other"));
+  const retriever::RetrieverConfig config = tiny_retriever_config();
+  const retriever::RetrieverModel model(config, tiny_words()->tower());
+  const nn::ModelStage stage{"retriever", config, nn::module_tensors(model)};
+  EXPECT_NO_THROW(retriever::Retriever(stage, tiny_words()));
+  EXPECT_THROW(retriever::Retriever(stage, words), Error);
+  nn::ModelStage old = stage;
+  old.config["text_tower"] = {{"tower", "wordpiece_transformer"}};
+  EXPECT_THROW(retriever::Retriever(old, tiny_words()), Error);
 }
 
 TEST(RetrieverTraining, ErrorsSayWhatToDo) {
   auto clips = separable_clips(2, 1, 1);
   for (db::TrainingClip& clip : clips) clip.captions = {" . "};
   EXPECT_THROW(
-      training::train_retriever(clips, {}, {}, retriever::retriever_preset(ModelSize::tiny),
-                                quick_options(1), {}),
+      training::train_retriever(clips, {}, tiny_words(),
+                                retriever::retriever_preset(ModelSize::tiny), quick_options(1), {}),
       Error);
-  EXPECT_THROW(retriever::Retriever(nn::ModelStage{"tokenizer", {}, {}}), Error);
-  EXPECT_THROW(retriever::Retriever(nn::ModelStage{"retriever", {{"preset", "tiny"}}, {}}), Error);
+  EXPECT_THROW(retriever::Retriever(nn::ModelStage{"tokenizer", {}, {}}, tiny_words()), Error);
+  EXPECT_THROW(
+      retriever::Retriever(nn::ModelStage{"retriever", {{"preset", "tiny"}}, {}}, tiny_words()),
+      Error);
   EXPECT_THROW(parse_preset("huge"), Error);
   EXPECT_THROW(retriever::parse_queues("three"), Error);
 }
