@@ -156,6 +156,43 @@ TEST(RetrieverTraining, LeavesTheSentenceEncoderAlone) {
   EXPECT_TRUE(torch::allclose(both.states[0].slice(0, 0, states.size(0)), states, 1e-4, 1e-5));
 }
 
+TEST(RetrieverTraining, TunesACopyOfTheLastLayers) {
+  const at::Tensor frozen = tiny_text_stage().tensors.at("block1.query.weight").clone();
+  retriever::RetrieverConfig config = retriever::retriever_preset(ModelSize::tiny);
+  config.tuned_text_layers = 1;
+  const nn::ModelStage stage = training::train_retriever(
+      separable_clips(12, 2, 1), {}, tiny_words(), config, quick_options(3), {});
+  EXPECT_TRUE(frozen.equal(tiny_text_stage().tensors.at("block1.query.weight")));
+  const at::Tensor tuned = stage.tensors.at("text_tail.block1.query.weight");
+  EXPECT_FALSE(tuned.equal(frozen));
+  EXPECT_LT((tuned - frozen).abs().max().item<float>(), 0.1);
+  EXPECT_FALSE(stage.tensors.contains("text_tail.block0.query.weight"));
+  const retriever::Retriever retriever(stage, tiny_words());
+  const encoders::TokenBatch tokens = tiny_words()->tower()->tokenize({"runs"});
+  const at::NoGradGuard no_grad;
+  const at::Tensor plain = tiny_words()->tower()->encode(tokens.ids, tokens.mask).states;
+  EXPECT_FALSE(torch::allclose(retriever.encode_text({"runs"}).states, plain, 1e-3, 1e-4));
+}
+
+TEST(RetrieverTraining, GoesOnFromTheWeightsOfAModel) {
+  const auto clips = separable_clips(12, 2, 1);
+  const retriever::RetrieverConfig config = retriever::retriever_preset(ModelSize::tiny);
+  training::RetrieverTrainingOptions options = quick_options(3);
+  const nn::ModelStage first =
+      training::train_retriever(clips, {}, tiny_words(), config, options, {});
+  options.trainer.learning_rate = 0;
+  options.start = first;
+  options.start->tensors["text_parts.weight"] = torch::zeros({3, 3});
+  const nn::ModelStage second =
+      training::train_retriever(clips, {}, tiny_words(), config, options, {});
+  EXPECT_EQ(second.config.at("start").at("anew"), nlohmann::json({"text_parts.weight"}));
+  for (const auto& [name, tensor] : first.tensors) {
+    EXPECT_EQ(tensor.equal(second.tensors.at(name)), name != "text_parts.weight") << name;
+  }
+  options.start->tensors = {{"nothing", torch::zeros({1})}};
+  EXPECT_THROW(training::train_retriever(clips, {}, tiny_words(), config, options, {}), Error);
+}
+
 TEST(RetrieverTraining, AnotherSentenceEncoderIsRefused) {
   nn::ModelStage other = tiny_text_stage();
   other.tensors["words"] = other.tensors["words"] + 1;
