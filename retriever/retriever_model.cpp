@@ -22,17 +22,21 @@ RetrieverModel::RetrieverModel(const RetrieverConfig& config,
   }
 }
 
-TextVectors RetrieverModel::encode_text(const at::Tensor& ids, const at::Tensor& mask) {
-  at::Tensor states;
-  {
-    const at::NoGradGuard frozen;
-    states = tower_->encode_below(ids, mask, config_.tuned_text_layers);
-  }
-  if (tail_) states = tail_->forward(states, mask);
+at::Tensor RetrieverModel::frozen_states(const at::Tensor& ids, const at::Tensor& mask) const {
+  const at::NoGradGuard frozen;
+  return tower_->encode_below(ids, mask, config_.tuned_text_layers);
+}
+
+TextVectors RetrieverModel::read_states(const at::Tensor& frozen, const at::Tensor& mask) {
+  const at::Tensor states = tail_ ? tail_->forward(frozen, mask) : frozen;
   const at::Tensor pooled = reader_->forward(states, mask);
   return {
       states, text_head_->forward(pooled),
       unit_rows(text_parts_(pooled).unflatten(1, {motion::kBodyParts, config_.part_embedding}))};
+}
+
+TextVectors RetrieverModel::encode_text(const at::Tensor& ids, const at::Tensor& mask) {
+  return read_states(frozen_states(ids, mask), mask);
 }
 
 }  // namespace remomask::retriever

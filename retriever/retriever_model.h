@@ -27,6 +27,10 @@ class RetrieverModel final : public torch::nn::Module {
 
   /// No gradient flows into the sentence encoder itself.
   TextVectors encode_text(const at::Tensor& ids, const at::Tensor& mask);
+  /// The same from frozen_states().
+  TextVectors read_states(const at::Tensor& frozen, const at::Tensor& mask);
+  /// States below config.tuned_text_layers [B, S, W], without gradient.
+  at::Tensor frozen_states(const at::Tensor& ids, const at::Tensor& mask) const;
   const encoders::TextTower& text_tower() const { return *tower_; }
   MotionEncoder& motion_encoder() { return *motion_; }
   const RetrieverConfig& config() const { return config_; }

@@ -12,15 +12,21 @@ namespace {
 
 constexpr double kLargestScale = 100;  // temperature 0.01, as in CLIP
 
-/// Hides words (not special tokens or pads) with probability `share`.
-at::Tensor hide_words(const encoders::TokenBatch& tokens, double share,
-                      const encoders::TextTower& tower) {
-  if (share <= 0) return tokens.ids;
+/// The states of a batch after words (not special tokens or pads) were hidden with probability
+/// `share`. Only captions that lose a word are encoded again.
+at::Tensor states_with_hidden_words(const PairBatch& batch, double share,
+                                    const retriever::RetrieverModel& model) {
+  if (share <= 0) return batch.text_states;
+  const encoders::TokenBatch& tokens = batch.tokens;
   at::Tensor hidden = torch::rand(tokens.ids.sizes()).lt(share);
-  for (const int64_t special : tower.special_ids()) {
+  for (const int64_t special : model.text_tower().special_ids()) {
     hidden = hidden.logical_and(tokens.ids.ne(special));
   }
-  return tokens.ids.masked_fill(hidden, tower.mask_id());
+  const at::Tensor rows = torch::nonzero(hidden.any(1)).squeeze(1);
+  if (rows.numel() == 0) return batch.text_states;
+  const at::Tensor ids = tokens.ids.masked_fill(hidden, model.text_tower().mask_id());
+  return batch.text_states.index_copy(
+      0, rows, model.frozen_states(ids.index_select(0, rows), tokens.mask.index_select(0, rows)));
 }
 
 }  // namespace
@@ -115,9 +121,9 @@ at::Tensor BmmModel::part_loss(const at::Tensor& motion, const at::Tensor& text,
 
 BmmLosses BmmModel::loss(const PairBatch& batch, double part_weight, double token_drop) {
   kept_ = make_keys(batch);
-  const at::Tensor ids = is_training() ? hide_words(batch.tokens, token_drop, online_->text_tower())
-                                       : batch.tokens.ids;
-  const retriever::TextVectors text = online_->encode_text(ids, batch.tokens.mask);
+  const at::Tensor states =
+      is_training() ? states_with_hidden_words(batch, token_drop, *online_) : batch.text_states;
+  const retriever::TextVectors text = online_->read_states(states, batch.tokens.mask);
   const retriever::MotionVectors motion = online_->motion_encoder().forward(batch.online_patches);
 
   const at::Tensor factor = scale();

@@ -33,6 +33,7 @@ void update_twin(torch::nn::Module& twin, torch::nn::Module& online, double mome
 
 struct PairBatch {
   encoders::TokenBatch tokens;
+  at::Tensor text_states;  ///< [B, S, W] RetrieverModel::frozen_states() of the tokens
   retriever::PatchBatch online_patches;  ///< may lack patches (augmentation)
   retriever::PatchBatch key_patches;
   PairIdentity identity;

@@ -10,6 +10,7 @@
 #include "evaluation/retrieval_metrics.h"
 #include "remomask/error.h"
 #include "text/caption.h"
+#include "training/caption_states.h"
 #include "training/momentum.h"
 #include "training/start_weights.h"
 #include "training/training_batches.h"
@@ -30,14 +31,24 @@ int64_t meaning_identity(const db::TrainingClip& clip) {
                                             : "meaning " + clip.meaning);
 }
 
+std::vector<std::string> all_captions(const std::vector<db::TrainingClip>& clips) {
+  std::vector<std::string> captions;
+  for (const db::TrainingClip& clip : clips) {
+    captions.insert(captions.end(), clip.captions.begin(), clip.captions.end());
+  }
+  return captions;
+}
+
 /// Draws the batches of a run: a function of seed and step alone.
 class BatchSource {
  public:
   BatchSource(const std::vector<db::TrainingClip>& clips, const retriever::RetrieverConfig& config,
-              const RetrieverTrainingOptions& options)
+              const RetrieverTrainingOptions& options, const encoders::TextTower& tower,
+              const Monitor& monitor)
       : clips_(clips),
         config_(config),
         options_(options),
+        states_(tower, all_captions(clips), config.tuned_text_layers, monitor),
         batches_(clips, options.batch, options.trainer.seed) {}
 
   PairBatch batch(int64_t step, retriever::RetrieverModel& model) {
@@ -57,7 +68,9 @@ class BatchSource {
       meanings.push_back(meaning_identity(clip));
     }
     retriever::MotionEncoder& encoder = model.motion_encoder();
-    return {model.text_tower().tokenize(captions),
+    const encoders::TokenBatch tokens = model.text_tower().tokenize(captions);
+    return {tokens,
+            states_.states(captions, tokens),
             encoder.patches(online),
             encoder.patches(whole),
             {torch::tensor(groups, torch::kLong), torch::tensor(texts, torch::kLong),
@@ -68,6 +81,7 @@ class BatchSource {
   const std::vector<db::TrainingClip>& clips_;
   const retriever::RetrieverConfig& config_;
   const RetrieverTrainingOptions& options_;
+  CaptionStates states_;
   EpochBatches batches_;
 };
 
@@ -161,7 +175,7 @@ nn::ModelStage train_retriever(const std::vector<db::TrainingClip>& train,
     });
   }
   trainer.set_after_step([&](int64_t) { model.after_step(); });
-  BatchSource source(clips, config, options);
+  BatchSource source(clips, config, options, *words->tower(), monitor);
   trainer.run(
       [&](int64_t step) {
         const BmmLosses losses =

@@ -19,9 +19,10 @@ struct TrainReport {
   std::string model;  ///< path of the finished model file
 };
 
-/// Trains all networks of a model: text encoder, retriever, tokenizer, masked and residual
-/// transformer. Can be stopped at any moment (Interrupted); the same call continues to the same
-/// weights. Throws Error for a database without captioned training clips.
+/// Trains all networks of a model: retriever, tokenizer, masked and residual transformer. Sentences
+/// are read by the sentence encoder in text.safetensors of the folder, else by the shipped one. Can
+/// be stopped at any moment (Interrupted); the same call continues to the same weights. Throws
+/// Error for a database without captioned training clips.
 REMOMASK_API TrainReport train_model(const TrainOptions& options, const Monitor& monitor = {});
 
 }  // namespace remomask

@@ -70,6 +70,28 @@ TEST_F(PipelineTest, KilledTrainingResumesToTheSameModel) {
   EXPECT_EQ(read_file(path("killed/model.safetensors")), read_file(path("run/model.safetensors")));
 }
 
+TEST_F(PipelineTest, TrainingGoesOnFromAModel) {
+  const std::string model = path("run/model.safetensors");
+  auto arguments = train_arguments("further");
+  for (const std::string& word :
+       {std::string("--from"), model, std::string("--keep"), std::string("retriever,tokenizer"),
+        std::string("--text"), std::string(REMOMASK_SOURCE_DIR "/models/text.safetensors"),
+        std::string("--steps"), std::string("2")}) {
+    arguments.push_back(word);
+  }
+  const ProgramResult trained = run_program(arguments);
+  ASSERT_EQ(trained.exit_code, 0) << trained.errors;
+  const auto before = run_json({"info", model})["stages"];
+  const auto after = run_json({"info", path("further/model.safetensors")})["stages"];
+  for (const char* stage : {"retriever", "tokenizer"}) EXPECT_EQ(after[stage], before[stage]);
+  for (const char* stage : {"masked", "residual"}) EXPECT_NE(after[stage], before[stage]);
+  EXPECT_TRUE(fs::exists(path("further/text.safetensors")));
+  const ProgramResult keep_alone = run_program(
+      {"train", "all", "--db", path("motions.sqlite"), "-o", path("none"), "--keep", "tokenizer"});
+  EXPECT_NE(keep_alone.exit_code, 0);
+  EXPECT_NE(keep_alone.errors.find("--from"), std::string::npos) << keep_alone.errors;
+}
+
 TEST_F(PipelineTest, SearchFiltersAndExplains) {
   const auto found = run_json(with_model({"search", "a person waves", "-k", "5"}));
   ASSERT_EQ(found["hits"].size(), 5u);

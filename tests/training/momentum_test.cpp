@@ -20,7 +20,9 @@ training::PairBatch batch_of(const std::vector<db::TrainingClip>& clips,
     groups.push_back(clip.group);
   }
   const retriever::PatchBatch patches = model.motion_encoder().patches(crops);
-  return {model.text_tower().tokenize(captions),
+  const encoders::TokenBatch tokens = model.text_tower().tokenize(captions);
+  return {tokens,
+          model.frozen_states(tokens.ids, tokens.mask),
           patches,
           patches,
           {torch::tensor(groups), torch::tensor(groups), torch::tensor(groups)}};
