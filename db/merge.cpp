@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "db/attribution.h"
+#include "db/lost_captions.h"
 #include "db/transaction.h"
 #include "remomask/error.h"
 
@@ -169,7 +170,8 @@ class Merger {
   void store(const Clip& original) {
     if (const auto same = by_hash_.find(original.content_hash); same != by_hash_.end()) {
       report_.duplicates.emplace_back(original.name, same->second.name);
-      warn_of_lost_captions(original, same->second);
+      const std::string lost = lost_captions_warning(original, same->second);
+      if (!lost.empty()) report_.warnings.push_back(original.name + ": " + lost);
       return;
     }
     Clip clip = original;
@@ -186,18 +188,6 @@ class Merger {
     names_.insert(clip.name);
     added_files_.insert(key);
     ++report_.added;
-  }
-
-  void warn_of_lost_captions(const Clip& clip, const Clip& same) {
-    const auto count =
-        std::count_if(clip.captions.begin(), clip.captions.end(), [&](const std::string& caption) {
-          return std::find(same.captions.begin(), same.captions.end(), caption) ==
-                 same.captions.end();
-        });
-    if (count == 0) return;
-    report_.warnings.push_back(clip.name + ": " + std::to_string(count) + " captions that '" +
-                               same.name +
-                               "' does not have are not stored, as the motion is a duplicate");
   }
 
   void warn_of_split(const Clip& clip) {

@@ -28,7 +28,7 @@ class CaptionLine {
     entry.line = line_;
     entry.clip = text("clip", true);
     if (entry.clip.empty()) fail("the clip has no name");
-    entry.captions = texts("captions");
+    entry.captions = captions();
     if (const auto labels = json_.find("labels"); labels != json_.end()) {
       if (!labels->is_object()) fail("\"labels\" must be a JSON object");
       entry.labels = *labels;
@@ -65,6 +65,19 @@ class CaptionLine {
     return value->get<std::string>();
   }
 
+  std::vector<std::string> captions() const {
+    const auto value = json_.find("captions");
+    if (value != json_.end()) {
+      return value->is_string() ? std::vector{value->get<std::string>()} : texts("captions");
+    }
+    for (const char* other : {"caption", "text", "texts"}) {
+      if (json_.contains(other)) {
+        fail(std::string("\"") + other + "\" is not read; name the list of captions \"captions\"");
+      }
+    }
+    return {};
+  }
+
   std::vector<std::string> texts(const char* key) const {
     std::vector<std::string> list;
     const auto values = json_.find(key);
@@ -86,7 +99,7 @@ class CaptionLine {
 }  // namespace
 
 CaptionsFile::CaptionsFile(const std::string& path) : path_(path) {
-  const std::string content = text::read_text_file(path);
+  const std::string content = text::read_lines_file(path);
   std::optional<FileError> first_failure;
   std::string_view rest = content;
   for (long line = 1; !rest.empty(); ++line) {

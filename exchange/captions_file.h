@@ -9,7 +9,7 @@ namespace remomask::exchange {
 
 /// One line of a captions file.
 struct CaptionEntry {
-  std::string clip;  ///< file stem, or path in the folder without extension
+  std::string clip;  ///< file stem, or path in the folder, with or without its extension
   std::vector<std::string> captions;
   nlohmann::json labels = nlohmann::json::object();
   std::string split = "none";
@@ -22,8 +22,9 @@ struct CaptionEntry {
 };
 
 /// Captions of a folder of motion files: JSON Lines of
-/// {"clip": "...", "captions": ["..."], "labels": {...}, "split": "train|val|test|none"},
-/// and, as an export writes them, "name", "group", "licence", "tags", "canonical".
+/// {"clip": "...", "captions": ["..."], "labels": {...}, "split": "train|val|test|none"}
+/// (one caption needs no list), and, as an export writes them, "name", "group", "licence", "tags",
+/// "canonical".
 class CaptionsFile {
  public:
   CaptionsFile() = default;

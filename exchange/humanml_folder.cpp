@@ -121,12 +121,13 @@ void HumanmlFolder::read_splits() {
       warnings_.push_back(path + ": is missing: no clip is in the split '" + split + "'");
       continue;
     }
-    std::istringstream lines(text::read_text_file(path));
+    std::istringstream lines(text::read_lines_file(path));
     std::unordered_map<std::string, long> seen;
     std::string id;
     for (long line = 1; std::getline(lines, id); ++line) {
       const auto is_blank = [](char c) { return c == '\r' || c == ' ' || c == '\t'; };
       id.erase(std::remove_if(id.begin(), id.end(), is_blank), id.end());
+      if (id.ends_with(".npy")) id.resize(id.size() - 4);
       if (id.empty()) continue;
       const std::string where = path + ":" + std::to_string(line) + ": clip '" + id + "' ";
       const auto [earlier, first_time] = seen.emplace(id, line);

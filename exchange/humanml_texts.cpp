@@ -90,7 +90,7 @@ HumanmlLine parse_humanml_line(std::string_view text, const std::string& path, l
 
 std::vector<TimedCaptions> read_humanml_texts(const std::string& path,
                                               std::vector<std::string>& warnings) {
-  const std::string content = text::read_text_file(path);
+  const std::string content = text::read_lines_file(path);
   std::vector<TimedCaptions> parts;
   std::vector<std::string> bad_lines;
   std::optional<FileError> first_failure;

@@ -1,13 +1,12 @@
 #include "exchange/import.h"
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 
+#include "db/lost_captions.h"
 #include "db/transaction.h"
 #include "exchange/archive.h"
 #include "exchange/humanml_folder.h"
@@ -146,18 +145,10 @@ class ImportWriter {
       const std::string twin = "'" + same.name + "' of '" + same.source + "'";
       twins += (twins.empty() ? "" : ", ") + twin;
       if (!all) reject(file + " (" + clip->name + ")", "is the same motion as " + twin);
-      warn_of_lost_captions(file, *clip, same);
+      const std::string lost = db::lost_captions_warning(*clip, same);
+      if (!lost.empty()) add_warning(file + ": " + lost);
     }
     if (all) reject(file, "is the same motion as " + twins);
-  }
-
-  void warn_of_lost_captions(const std::string& file, const db::Clip& clip, const db::Clip& same) {
-    const std::set<std::string> known(same.captions.begin(), same.captions.end());
-    const auto is_new = [&](const std::string& caption) { return !known.contains(caption); };
-    const auto count = std::count_if(clip.captions.begin(), clip.captions.end(), is_new);
-    if (count == 0) return;
-    add_warning(file + ": " + std::to_string(count) + " captions that '" + same.name +
-                "' does not have are not stored, as the motion is a duplicate");
   }
 
   void reject(const std::string& file, const std::string& reason) {

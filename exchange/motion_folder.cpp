@@ -216,6 +216,7 @@ void MotionFolder::match_captions() {
   for (size_t i = 0; i < files_.size(); ++i) {
     const CaptionEntry* entry = captions_.find(files_[i].key);
     if (!entry) entry = captions_.find(path_without_extension(files_[i].name));
+    if (!entry) entry = captions_.find(files_[i].name);
     described_.push_back(entry);
     if (entry) {
       used.insert(entry);

@@ -87,7 +87,7 @@ void check_sentence(const ScriptLine& line, const std::string& path) {
 }  // namespace
 
 std::vector<ScriptLine> parse_script(std::string_view script, const std::string& path) {
-  const std::string decoded = text::utf8_text(std::string(script));
+  const std::string decoded = text::utf8_lines(std::string(script));
   std::string_view text = decoded;
   std::vector<ScriptLine> lines;
   long number = 0;

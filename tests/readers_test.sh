@@ -1,7 +1,7 @@
 #!/bin/bash
 # Readers of other people place every joint of what the program writes where the program has it:
-# three.js, bvhio and pybvh, the validator of glTF, and Blender where it is installed. What is
-# generated stands on the floor of a three.js page, in node and, where it is installed, in Chromium.
+# three.js, bvhio and pybvh, and the validator of glTF. What is generated stands on the floor of a
+# three.js page, in node and, where it is installed, in Chromium. blender_test.sh tries Blender.
 #   tests/readers_test.sh PROGRAM CACHE_FOLDER
 # The readers are installed into the cache folder ($REMOMASK_READERS, where that is set). Exits with
 # 77 (skipped) and the reason where node or python3-venv is missing, or the network at first use.
@@ -65,12 +65,4 @@ for sentence in "a person walks forward and turns around" "a person sits down on
     echo "Chromium is not installed: not tried"
   fi
 done
-# Debian 12's Blender cannot open any BVH file.
-if command -v blender >/dev/null; then
-  glb=(glb/*.glb)
-  try blender -b --python-exit-code 1 --python "$root/tests/readers/blender_joints.py" -- \
-    "${glb[0]}" "npz/$(basename "${glb[0]}" .glb).npz"
-else
-  echo "Blender is not installed: not tried"
-fi
 exit $failed

@@ -1,6 +1,7 @@
 #include "text/encoding.h"
 
 #include <cstdint>
+#include <utility>
 
 #include "base/bounded_file.h"
 #include "text/utf8.h"
@@ -50,6 +51,23 @@ std::string from_utf16(const std::string& bytes, bool big_endian) {
   return text;
 }
 
+/// What Windows-1252 has where Latin-1 has control characters.
+constexpr char32_t kWindows1252[32] = {
+    0x20AC, 0x81,   0x201A, 0x192,  0x201E, 0x2026, 0x2020, 0x2021, 0x2C6,  0x2030, 0x160,
+    0x2039, 0x152,  0x8D,   0x17D,  0x8F,   0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+    0x2013, 0x2014, 0x2DC,  0x2122, 0x161,  0x203A, 0x153,  0x9D,   0x17E,  0x178};
+
+void append_line(std::string& text, std::string_view line) {
+  if (is_utf8(line)) {
+    text += line;
+    return;
+  }
+  for (const char c : line) {
+    const auto byte = static_cast<unsigned char>(c);
+    append_utf8(text, byte >= 0x80 && byte < 0xA0 ? kWindows1252[byte - 0x80] : byte);
+  }
+}
+
 }  // namespace
 
 std::string utf8_text(std::string bytes) {
@@ -59,6 +77,20 @@ std::string utf8_text(std::string bytes) {
   }
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
   return bytes;
+}
+
+std::string utf8_lines(std::string bytes) {
+  const std::string decoded = utf8_text(std::move(bytes));
+  std::string text;
+  text.reserve(decoded.size());
+  std::string_view rest = decoded;
+  while (true) {
+    const size_t end = rest.find_first_of("\r\n");
+    append_line(text, rest.substr(0, end));
+    if (end == std::string_view::npos) return text;
+    text += '\n';
+    rest.remove_prefix(end + (rest.substr(end).starts_with("\r\n") ? 2 : 1));
+  }
 }
 
 bool is_utf8(std::string_view text) {
@@ -80,6 +112,10 @@ bool is_utf8(std::string_view text) {
 
 std::string read_text_file(const std::string& path) {
   return utf8_text(read_bounded_file(path, kMaxTextBytes));
+}
+
+std::string read_lines_file(const std::string& path) {
+  return utf8_lines(read_bounded_file(path, kMaxTextBytes));
 }
 
 }  // namespace remomask::text

@@ -22,10 +22,10 @@ shift 2
 command -v debootstrap >/dev/null ||
   { echo "debootstrap is missing: apt-get install debootstrap" >&2; exit 1; }
 source=$(cd "$(dirname "$0")/.." && pwd)
-mirror=${MIRROR:-http://deb.debian.org/debian}
 
 if [ ! -f "$folder/etc/apt/remomask_ready" ]; then
-  debootstrap --variant=minbase "$release" "$folder" "$mirror"
+  # Without MIRROR, the archive that debootstrap knows.
+  debootstrap --variant=minbase "$release" "$folder" ${MIRROR:+"$MIRROR"}
   # The way to the network that this machine uses: proxies, mirrors, checks of dates.
   apt-config dump | grep -E '^Acquire::(Check-|https?::|Retries)' \
     >"$folder/etc/apt/apt.conf.d/90host" || true

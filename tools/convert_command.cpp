@@ -34,12 +34,11 @@ void register_convert(CLI::App& app, Program& program) {
   options->overwrite.add(*command);
   options->writing.add(*command, "--output-fps");
   options->writing.add_own_proportions(*command);
-  add_skeleton_map_option(*command, options->file.skeleton_map);
   command->add_option("--up-axis", options->up_axis, "X, Y or Z; default: detected")
       ->check(CLI::IsMember({"X", "Y", "Z"}));
   command->add_option("--metres-per-unit", options->metres_per_unit, "default: detected")
       ->check(positive_number());
-  add_reading_options(*command, options->file.fps, options->file.root);
+  add_reading_options(*command, options->file);
   command->add_option("--animation", options->file.animation,
                       "name or number (from 0) of the animation of a glTF or FBX file");
   command->add_option("--skip-frames", options->file.skip_frames, "frames to drop at the start");

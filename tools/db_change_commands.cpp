@@ -41,8 +41,7 @@ void register_add(CLI::App& group, Program& program) {
   command->add_option("--licence,--set-licence", options->add.licence, "licence of these motions");
   command->add_option("--source", options->add.source, "name of the data set")
       ->capture_default_str();
-  add_skeleton_map_option(*command, options->add.skeleton_map);
-  add_reading_options(*command, options->add.fps, options->add.root);
+  add_reading_options(*command, options->add);
   command->callback([options, &program] {
     options->add.labels = parse_labels(options->labels);
     db::StoringDatabase storing(options->database);

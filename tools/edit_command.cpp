@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 
 #include "base/time.h"
-#include "formats/motion_writing.h"
 #include "tools/core.h"
 #include "tools/output_path.h"
 #include "tools/reading_options.h"
@@ -18,12 +17,8 @@ void register_edit(CLI::App& app, Program& program) {
       "remomask edit walk.bvh -o edited.bvh --prompt \"someone waves\" --span 1-3 --parts "
       "left_arm");
   command->add_option("input", options->input, "motion file (BVH, AMC, npy, npz)")->required();
-  add_reading_options(*command, options->reading.fps, options->reading.root, "--input-fps");
-  add_skeleton_map_option(*command, options->reading.skeleton_map);
-  command
-      ->add_option("-o,--output", options->output,
-                   "motion file (" + formats::written_extensions() + ")")
-      ->required();
+  add_reading_options(*command, options->reading, "--input-fps");
+  options->add_output(*command);
   command->add_option("--prompt", options->prompt, "what the person does there")->required();
   command->add_option("--span", options->spans,
                       "A-B[,C-D ...] in seconds; start and end are times, too; default with "
@@ -43,18 +38,9 @@ void register_edit(CLI::App& app, Program& program) {
                    "frames inside of a span over which it leaves, and meets, what stays")
       ->capture_default_str()
       ->check(number_between(1, 40));
-  command->add_option("--seed", options->generation.generate.seed, "same seed, same motion")
-      ->capture_default_str();
-  command->add_option("-n,--count", options->count, "number of motions, seeds SEED, SEED+1, ...")
-      ->capture_default_str()
-      ->check(number_between(1, 1000));
+  options->add_count(*command);
   command->add_option("--sheet", options->sheet, "draw before and after as a contact sheet (.png)");
-  options->files.add_model(*command);
-  options->files.add_database(*command);
-  options->filter.add(*command);
-  options->generation.add(*command);
-  options->overwrite.add(*command);
-  options->writing.add(*command);
+  options->add_rest(*command);
   command->callback([options, &program] {
     require_writable_output(options->output);
     options->writing.chosen(options->output);

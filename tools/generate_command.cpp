@@ -40,10 +40,7 @@ void register_generate(CLI::App& app, Program& program) {
   command->add_option("--script", options->script,
                       "several sentences in a row, instead of the prompt: a file with a line "
                       "\"SECONDS  sentence\" each");
-  command
-      ->add_option("-o,--output", options->output,
-                   "motion file (" + formats::written_extensions() + ")")
-      ->required();
+  options->add_output(*command);
   command->add_option("--sheet", options->sheet, "also draw a contact sheet (.png)");
   command->add_option("--seconds", options->generation.generate.seconds,
                       "length, 1 to 600, kept to the frame (20 a second); default: see --length");
@@ -54,22 +51,13 @@ void register_generate(CLI::App& app, Program& program) {
                    "seed (sample)")
       ->capture_default_str()
       ->check(CLI::IsMember({"evidence", "likely", "sample"}));
-  command->add_option("--seed", options->generation.generate.seed, "same seed, same motion")
-      ->capture_default_str();
-  command->add_option("-n,--count", options->count, "number of motions, seeds SEED, SEED+1, ...")
-      ->capture_default_str()
-      ->check(number_between(1, 1000));
+  options->add_count(*command);
   command->add_flag("--one-file", options->one_file,
                     "with -n: all motions as animations of one .glb or .fbx file");
   command->add_flag("--influence", options->generation.generate.influence,
                     "also say what share of the codes would be others without each retrieved "
                     "motion (as many generations more)");
-  options->files.add_model(*command);
-  options->files.add_database(*command);
-  options->filter.add(*command);
-  options->generation.add(*command);
-  options->overwrite.add(*command);
-  options->writing.add(*command);
+  options->add_rest(*command);
   command->callback([options, prompt, &program] {
     if (prompt->count() == 0 && options->script.empty()) {
       throw CLI::RequiredError("a sentence, or --script");

@@ -108,8 +108,7 @@ void register_import(CLI::App& app, Program& program) {
                       "FOLDER.jsonl or FOLDER/captions.jsonl");
   command->add_option("--source", options->import.source, "name of the data set");
   command->add_option("--licence", options->import.licence, "licence of these motions");
-  add_skeleton_map_option(*command, options->import.skeleton_map);
-  add_reading_options(*command, options->import.fps, options->import.root);
+  add_reading_options(*command, options->import);
   command->add_option("--min-frames", options->import.min_frames, "shorter clips are rejected")
       ->capture_default_str();
   command->add_option("--max-frames", options->import.max_frames, "longer clips become windows")

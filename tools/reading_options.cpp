@@ -4,8 +4,8 @@
 
 namespace remomask::tools {
 
-void add_reading_options(CLI::App& command, std::optional<double>& fps, std::string& root,
-                         const std::string& fps_name) {
+void add_rate_and_root_options(CLI::App& command, std::optional<double>& fps, std::string& root,
+                               const std::string& fps_name) {
   command
       .add_option(fps_name, fps,
                   "frames a second of the file, if it states a wrong rate or none (.npy: 20)")

@@ -32,10 +32,9 @@ void register_retarget(CLI::App& app, Program& program) {
       ->required();
   options->overwrite.add(*command);
   options->writing.add(*command, "--output-fps");
-  add_skeleton_map_option(*command, options->file.skeleton_map);
   command->add_option("--animation", options->file.animation,
                       "name or number (from 0) of the animation of a glTF or FBX motion");
-  add_reading_options(*command, options->file.fps, options->file.root);
+  add_reading_options(*command, options->file);
   command->callback([options, &program] {
     require_writable_output(options->output);
     const MotionWriteOptions writing = options->writing.chosen(options->output);

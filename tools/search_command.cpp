@@ -24,8 +24,7 @@ void add_query_options(CLI::App& command, SearchCommand& options) {
                      "a motion file (BVH, AMC, npy, npz): more like this");
   command.add_option("--from", options.from, "of the motion file: from this second");
   command.add_option("--to", options.to, "of the motion file: up to this second");
-  add_reading_options(command, options.reading.fps, options.reading.root);
-  add_skeleton_map_option(command, options.reading.skeleton_map);
+  add_reading_options(command, options.reading);
   command.add_option("--like-clip", query.like_clip, "a stored clip by name: more like it");
   command
       .add_option("--parts", query.parts,

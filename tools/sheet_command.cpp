@@ -41,8 +41,7 @@ void register_sheet(CLI::App& app, Program& program) {
   options->overwrite.add(*command);
   command->add_option("--title", options->titles,
                       "title of each row; default: prompt or file name");
-  add_reading_options(*command, options->reading.fps, options->reading.root);
-  add_skeleton_map_option(*command, options->reading.skeleton_map);
+  add_reading_options(*command, options->reading);
   command->add_option("--heading", options->sheet.heading, "above all rows");
   command->add_option("--poses", options->sheet.poses, "poses in a row")->capture_default_str();
   command->callback([options, &program] {

@@ -97,7 +97,7 @@ TEST_F(MergeTest, DuplicatesAreRefusedAndTakenNamesChange) {
   // b#db2 is taken here, b#db3 there.
   EXPECT_EQ(report.renamed, (Pairs{{"a", "a#db2"}, {"b", "b#db4"}}));
   ASSERT_EQ(report.warnings.size(), 1u);
-  EXPECT_NE(report.warnings[0].find("1 captions that 'a' does not have"), std::string::npos);
+  EXPECT_NE(report.warnings[0].find("1 caption that 'a' does not have"), std::string::npos);
   EXPECT_EQ(here_.motion(*here_.find_name("b#db4")).positions, walking_motion(24, 5).positions);
   EXPECT_TRUE(here_.find_name("b#db3"));
 }

@@ -221,7 +221,7 @@ TEST(HumanmlFolder, SplitFilesOfWindowsAndRepeatedIds) {
                         "a man walks#a/DET#0#0\r\n");
   write_file_atomically(folder / "set/train.txt",
                         "\xEF\xBB\xBF"
-                        "000001\t\r\n000001 \r\n");
+                        "000001\t\r000001.npy \r\n");
   write_file_atomically(folder / "set/val.txt", "");
   write_file_atomically(folder / "set/test.txt", "");
   exchange::ImportOptions options;

@@ -34,12 +34,12 @@ TEST(ImportCaptions, AMalformedLineOfCaptionsCostsThatLine) {
       {"{\"captions\": []}", "\"clip\" is missing"},
       {"{\"clip\": 7}", "\"clip\" must be a text"},
       {"{\"clip\": \"\"}", "no name"},
-      {"{\"clip\": \"a\", \"captions\": \"b\"}", "list of texts"},
+      {"{\"clip\": \"a\", \"captions\": 1}", "list of texts"},
+      {"{\"clip\": \"a\", \"caption\": \"b\"}", "\"caption\" is not read"},
       {"{\"clip\": \"a\", \"captions\": [1]}", "list of texts"},
       {"{\"clip\": \"a\", \"labels\": []}", "JSON object"},
       {"{\"clip\": \"a\", \"split\": \"dev\"}", "unknown split 'dev'"},
       {"{\"clip\": \"walk_1000\"}", "was given in line 1 already"},
-      {"{\"clip\": \"\xff\"}", "is not JSON"},
       {deep.c_str(), "nested deeper than"}};
   for (const auto& [line, message] : cases) {
     write_file_atomically(folder / "walks.jsonl", good + line);
@@ -67,6 +67,21 @@ TEST(ImportCaptions, CaptionsOfWindowsAreRead) {
   db::Database database(folder / "d", db::OpenMode::create);
   EXPECT_TRUE(exchange::import_folder(database, options).warnings.empty());
   EXPECT_EQ(database.clip(*database.find_name("walk_1000")).split, "train");
+}
+
+TEST(ImportCaptions, OtherSpellingsMeanTheSame) {
+  TestFolder folder;
+  const exchange::ImportOptions options = make_walks(folder, 2, ".npy");
+  // Lines that end with CR, one caption without a list, file names, and Windows-1252.
+  write_file_atomically(folder / "walks.jsonl",
+                        "{\"clip\": \"walk_1000.npy\", \"captions\": \"to the caf\xE9\"}\r"
+                        "{\"clip\": \"walk_1001\", \"captions\": [\"b\"]}\r");
+  db::Database database(folder / "d", db::OpenMode::create);
+  EXPECT_TRUE(exchange::import_folder(database, options).warnings.empty());
+  EXPECT_EQ(database.clip(*database.find_name("walk_1000")).captions,
+            std::vector<std::string>{"to the caf\xC3\xA9"});
+  EXPECT_EQ(database.clip(*database.find_name("walk_1001")).captions,
+            std::vector<std::string>{"b"});
 }
 
 }  // namespace

@@ -38,36 +38,36 @@ GenerateOptions short_motion(uint64_t seed) {
 }
 
 TEST(Face, ProgramAndLibraryWriteTheSameFiles) {
-  const ScratchFolder folder;
+  const TestFolder folder;
   const ProgramResult ran = run_program(
-      {"generate", kSentence, "--seed", "7", "--influence", "-o", folder.path("program.npy")});
+      {"generate", kSentence, "--seed", "7", "--influence", "-o", folder / "program.npy"});
   ASSERT_EQ(ran.exit_code, 0) << ran.errors;
   GenerateOptions options;
   options.seed = 7;
   options.influence = true;
   const GeneratedMotion made = face().generate(kSentence, options);
-  save_motion(folder.path("library.npy"), made);
-  EXPECT_EQ(read_file(folder.path("library.npy")), read_file(folder.path("program.npy")));
-  EXPECT_EQ(read_file(folder.path("library.npy.json")), read_file(folder.path("program.npy.json")));
+  save_motion(folder / "library.npy", made);
+  EXPECT_EQ(read_file(folder / "library.npy"), read_file(folder / "program.npy"));
+  EXPECT_EQ(read_file(folder / "library.npy.json"), read_file(folder / "program.npy.json"));
 }
 
 TEST(Face, ProgramAndLibraryEditTheSameWay) {
-  const ScratchFolder folder;
-  save_motion(folder.path("walk.npy"),
+  const TestFolder folder;
+  save_motion(folder / "walk.npy",
               face().generate("a person walks forward", short_motion(1)).motion);
   const ProgramResult ran =
-      run_program({"edit", folder.path("walk.npy"), "-o", folder.path("program.npy"), "--prompt",
+      run_program({"edit", folder / "walk.npy", "-o", folder / "program.npy", "--prompt",
                    "someone waves", "--span", "0.5-1.5", "--parts", "arms", "--seed", "4"});
   ASSERT_EQ(ran.exit_code, 0) << ran.errors;
   MotionFileOptions as_it_is;
   as_it_is.canonical = false;
-  const Motion original = load_motion(folder.path("walk.npy"), as_it_is).motion;
+  const Motion original = load_motion(folder / "walk.npy", as_it_is).motion;
   EditOptions options;
   options.seed = 4;
   const EditSpan arms{10, 30, {"arms"}};
-  save_motion(folder.path("library.npy"),
+  save_motion(folder / "library.npy",
               face().edit(original, std::span(&arms, 1), "someone waves", options).motion);
-  EXPECT_EQ(read_file(folder.path("library.npy")), read_file(folder.path("program.npy")));
+  EXPECT_EQ(read_file(folder / "library.npy"), read_file(folder / "program.npy"));
 }
 
 TEST(Face, ThreadsDoNotChangeAMotion) {
@@ -177,11 +177,11 @@ TEST(Face, NetworksMayBeFreedAfterEveryCall) {
 }
 
 TEST(Face, TheSidecarIsTyped) {
-  const ScratchFolder folder;
+  const TestFolder folder;
   GenerateOptions options = short_motion(9);
   options.best_of = 2;
-  save_motion(folder.path("made.bvh"), face().generate(kSentence, options));
-  const auto sidecar = nlohmann::json::parse(read_file(folder.path("made.bvh.json")));
+  save_motion(folder / "made.bvh", face().generate(kSentence, options));
+  const auto sidecar = nlohmann::json::parse(read_file(folder / "made.bvh.json"));
   EXPECT_EQ(sidecar.at("schema"), "remomask.motion/1");
   EXPECT_EQ(sidecar.at("seed"), "9");
   EXPECT_EQ(sidecar.at("frames"), 40);
@@ -195,16 +195,16 @@ TEST(Face, TheSidecarIsTyped) {
 }
 
 TEST(Face, ClipsAddedMeanwhileAreFound) {
-  const ScratchFolder folder;
-  const std::string database = folder.path("mine.sqlite");
+  const TestFolder folder;
+  const std::string database = folder / "mine.sqlite";
   std::filesystem::copy_file(shipped_database(), database);
   std::filesystem::copy_file(shipped_database() + ".index", database + ".index");
   const TextToMotion open(shipped_model(), database, with_threads(2));
   SearchQuery query;
   query.text = "a person hops on the left foot";
   const auto before = open.search(query).candidates;
-  save_motion(folder.path("hop.npy"), face().generate("a person jumps", short_motion(1)).motion);
-  const std::vector<std::string> files = {folder.path("hop.npy"), folder.path("absent.npy")};
+  save_motion(folder / "hop.npy", face().generate("a person jumps", short_motion(1)).motion);
+  const std::vector<std::string> files = {folder / "hop.npy", folder / "absent.npy"};
   AddOptions options;
   options.captions = {query.text};
   const AddReport added = add_motion_files(database, files, options);
@@ -216,8 +216,8 @@ TEST(Face, ClipsAddedMeanwhileAreFound) {
 }
 
 TEST(Face, NeedsNoIndexWithoutRetrieval) {
-  const ScratchFolder folder;
-  const std::string database = folder.path("unindexed.sqlite");
+  const TestFolder folder;
+  const std::string database = folder / "unindexed.sqlite";
   std::filesystem::copy_file(shipped_database(), database);
   EXPECT_THROW(TextToMotion(shipped_model(), database), Error);
   OpenOptions open = with_threads(2);
@@ -229,7 +229,7 @@ TEST(Face, NeedsNoIndexWithoutRetrieval) {
   EXPECT_EQ(unindexed.generate(kSentence, options).motion.positions,
             face().generate(kSentence, options).motion.positions);
   const ProgramResult ran = run_program({"generate", kSentence, "--no-retrieval", "--db", database,
-                                         "--seconds", "2", "-o", folder.path("alone.npy")});
+                                         "--seconds", "2", "-o", folder / "alone.npy"});
   EXPECT_EQ(ran.exit_code, 0) << ran.errors;
 }
 

@@ -83,19 +83,24 @@ TEST(Gltf, AWrittenFileIsReadBackWithItsJoints) {
   }
 }
 
+/// assimp has every joint where the motion has it.
+void expect_joints_of(const Motion& motion, const aiScene& scene) {
+  const Motion expected = on_its_skeleton(motion);
+  for (const int t : {0, 13, 39}) {
+    for (int j = 0; j < 22; ++j) {
+      EXPECT_LT((node_position(scene, 0, kNames[j], t) - joint_position(expected, t, j)).norm(),
+                1e-3)
+          << kNames[j] << " " << t;
+    }
+  }
+}
+
 TEST(Gltf, AssimpFindsTheSameJoints) {
   const Motion motion = walk_of(40);
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(written(".glb", motion), 0);
   ASSERT_TRUE(scene) << importer.GetErrorString();
-  const Motion expected = on_its_skeleton(motion);
-  for (const int t : {0, 13, 39}) {
-    for (int j = 0; j < 22; ++j) {
-      EXPECT_LT((node_position(*scene, 0, kNames[j], t) - joint_position(expected, t, j)).norm(),
-                1e-3)
-          << kNames[j] << " " << t;
-    }
-  }
+  expect_joints_of(motion, *scene);
   ASSERT_EQ(scene->mNumMeshes, 2U);
   EXPECT_EQ(scene->mMeshes[0]->mNumBones, 23U);
 }
@@ -105,14 +110,7 @@ TEST(Gltf, FbxHoldsTheSameJoints) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(written(".fbx", motion), 0);
   ASSERT_TRUE(scene) << importer.GetErrorString();
-  const Motion expected = on_its_skeleton(motion);
-  for (const int t : {0, 13, 39}) {
-    for (int j = 0; j < 22; ++j) {
-      EXPECT_LT((node_position(*scene, 0, kNames[j], t) - joint_position(expected, t, j)).norm(),
-                1e-3)
-          << kNames[j] << " " << t;
-    }
-  }
+  expect_joints_of(motion, *scene);
   const rig::SourceMotion read = scenes::read_fbx(written(".fbx", motion));
   EXPECT_EQ(read.frames, 40);
   EXPECT_NEAR(read.fps, 20, 1e-6);

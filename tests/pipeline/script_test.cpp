@@ -61,6 +61,7 @@ TEST(ParseScript, FilesOfWindowsPrograms) {
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0].seconds, 2);
   EXPECT_EQ(lines[0].sentence, "a person walks forward");
+  EXPECT_EQ(parse_script("2 a person walks\r1.5 someone waves\r", "s.txt").size(), 2u);
 }
 
 std::vector<pipeline::ScriptSegment> three_segments() {

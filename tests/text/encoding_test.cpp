@@ -25,6 +25,14 @@ TEST(TextEncoding, MarksVanishAndUtf16BecomesUtf8) {
             "a");
 }
 
+TEST(TextEncoding, LinesEndInOneWayAndEveryLineIsUtf8) {
+  EXPECT_EQ(text::utf8_lines(""), "");
+  EXPECT_EQ(text::utf8_lines("a\nb"), "a\nb");
+  EXPECT_EQ(text::utf8_lines("a\r\nb\r\r\nc\r"), "a\nb\n\nc\n");
+  EXPECT_EQ(text::utf8_lines("caf\xC3\xA9\ncaf\xE9 \x93quoted\x94 \x80\r"),
+            "caf\xC3\xA9\ncaf\xC3\xA9 \xE2\x80\x9Cquoted\xE2\x80\x9D \xE2\x82\xAC\n");
+}
+
 TEST(TextEncoding, KnowsUtf8) {
   EXPECT_TRUE(text::is_utf8(""));
   EXPECT_TRUE(text::is_utf8("a\xC3\xA4\xE6\x97\xA5\xF0\x9F\x99\x82"));

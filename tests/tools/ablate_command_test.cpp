@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 class AblateTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scratch_ = new ScratchFolder;
+    scratch_ = new TestFolder;
     run_json({"procedural", "--db", path("motions.sqlite"), "--count", "60"});
     const ProgramResult trained = run_program({"--quiet", "--threads", "1", "train", "evaluator",
                                                "--db", path("motions.sqlite"), "--preset", "tiny",
@@ -27,7 +27,7 @@ class AblateTest : public ::testing::Test {
     scratch_ = nullptr;
   }
 
-  static std::string path(const std::string& name) { return scratch_->path(name); }
+  static std::string path(const std::string& name) { return *scratch_ / name; }
 
   static std::vector<std::string> arguments(const std::string& folder) {
     std::vector<std::string> words = {"--threads", "1", "ablate", "-o", path(folder)};
@@ -47,10 +47,10 @@ class AblateTest : public ::testing::Test {
   }
 
  private:
-  static ScratchFolder* scratch_;
+  static TestFolder* scratch_;
 };
 
-ScratchFolder* AblateTest::scratch_ = nullptr;
+TestFolder* AblateTest::scratch_ = nullptr;
 
 TEST_F(AblateTest, KilledRunGoesOnToTheSameTable) {
   auto dry = arguments("straight");

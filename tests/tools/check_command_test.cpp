@@ -24,8 +24,8 @@ class CheckCommandTest : public testing::Test {
     std::ofstream(path, std::ios::binary) << content;
   }
 
-  ScratchFolder folder_;
-  std::string database_ = folder_.path("d.sqlite");
+  TestFolder folder_;
+  std::string database_ = folder_ / "d.sqlite";
 };
 
 TEST_F(CheckCommandTest, SaysWhatIsInOrder) {
@@ -42,7 +42,7 @@ TEST_F(CheckCommandTest, SaysWhatIsInOrder) {
 TEST_F(CheckCommandTest, NamesEveryDamagedFileAndFails) {
   damage(database_, "\"content\"");
   damage(database_ + ".index", "RMMINDEX");
-  const std::string absent = folder_.path("absent.safetensors");
+  const std::string absent = folder_ / "absent.safetensors";
   const ProgramResult result = run_program({"check", database_, database_ + ".index", absent});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find(database_ + ": clip "), std::string::npos) << result.output;

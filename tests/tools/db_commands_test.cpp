@@ -25,8 +25,8 @@ class DbCommandsTest : public testing::Test {
     return run_json(filters)["clips"].size();
   }
 
-  ScratchFolder scratch_;
-  std::string database_ = scratch_.path("d.sqlite");
+  TestFolder scratch_;
+  std::string database_ = scratch_ / "d.sqlite";
   nlohmann::json clips_;
 };
 
@@ -44,14 +44,14 @@ TEST(DbUsage, EveryCommandHasHelpWithAnExample) {
 }
 
 TEST_F(DbCommandsTest, BrokenFilesLeaveNoDatabaseBehind) {
-  const std::string broken = scratch_.path("walk.bvh"), fresh = scratch_.path("new.sqlite");
+  const std::string broken = scratch_ / "walk.bvh", fresh = scratch_ / "new.sqlite";
   std::ofstream(broken) << "HIERARCHY\nROOT";
-  const std::string folder = scratch_.path("broken");
+  const std::string folder = scratch_ / "broken";
   std::filesystem::create_directories(folder);
   std::filesystem::copy_file(broken, folder + "/walk.bvh");
   EXPECT_EQ(run_program({"db", "add", fresh, broken}).exit_code, 1);
   EXPECT_FALSE(std::filesystem::exists(fresh));
-  EXPECT_EQ(run_program({"import", scratch_.path("nowhere"), "--db", fresh}).exit_code, 1);
+  EXPECT_EQ(run_program({"import", scratch_ / "nowhere", "--db", fresh}).exit_code, 1);
   EXPECT_FALSE(std::filesystem::exists(fresh));
   EXPECT_EQ(run_json({"import", folder, "--db", fresh})["rejected"].size(), 1u);
   for (const char* ending : {"", "-wal", "-shm", "-journal"}) {
@@ -116,7 +116,7 @@ TEST_F(DbCommandsTest, AttributionsAreShownByInfo) {
 }
 
 TEST_F(DbCommandsTest, ActionsOfMadeMotionsAreInTheVocabularyOfThePacks) {
-  const std::string all = scratch_.path("all.sqlite");
+  const std::string all = scratch_ / "all.sqlite";
   run_json({"procedural", "--db", all, "--count", "59"});
   const auto found = [&](std::vector<std::string> conditions) {
     std::vector<std::string> arguments = {"db", "list", all};
@@ -179,15 +179,15 @@ TEST_F(DbCommandsTest, DryRunShowsWhatRemoveWouldTake) {
 }
 
 TEST_F(DbCommandsTest, SeveralFoldersAreImportedAtOnce) {
-  const std::string one = scratch_.path("one"), two = scratch_.path("two");
-  const std::string all = scratch_.path("all.sqlite");
+  const std::string one = scratch_ / "one", two = scratch_ / "two";
+  const std::string all = scratch_ / "all.sqlite";
   run_json({"db", "export", database_, one, name(0), name(1)});
   run_json({"db", "export", database_, two, name(2)});
   std::ofstream(two + "/broken.bvh") << "HIERARCHY\nROOT";
   // What is wrong with one of them is said before anything is stored.
   for (const auto& [arguments, what] :
        std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{one, scratch_.path("nowhere")}, "nowhere: there is no such folder"},
+           {{one, scratch_ / "nowhere"}, "nowhere: there is no such folder"},
            {{one, one + "/."}, "a data set 'one' is named before it"},
            {{one, two, "--source", "s"}, "--source is about one folder"},
            {{one, two, "--captions", one + "/captions.jsonl"}, "--captions is about one folder"}}) {
@@ -209,7 +209,7 @@ TEST_F(DbCommandsTest, SeveralFoldersAreImportedAtOnce) {
 }
 
 TEST_F(DbCommandsTest, ANameOfDigitsIsThatClip) {
-  const std::string out = scratch_.path("out");
+  const std::string out = scratch_ / "out";
   run_json({"db", "export", database_, out, name(0)});
   run_json({"db", "remove", database_, name(0)});
   std::filesystem::rename(out + "/" + name(0) + ".npy", out + "/000002.npy");
@@ -251,11 +251,11 @@ TEST_F(DbCommandsTest, InfoRoundsAndLeavesNoFilesBeside) {
 }
 
 TEST_F(DbCommandsTest, ExportMergeAddAndCheckWorkTogether) {
-  const std::string out = scratch_.path("out"), again = scratch_.path("again.sqlite");
+  const std::string out = scratch_ / "out", again = scratch_ / "again.sqlite";
   EXPECT_EQ(run_json({"db", "export", database_, out})["clips"], 12);
   EXPECT_EQ(run_json({"import", out, "--db", again})["clips_stored"], 12);
   EXPECT_EQ(run_json({"db", "merge", again, database_})["duplicates"].size(), 12u);
-  const std::string few = scratch_.path("few");
+  const std::string few = scratch_ / "few";
   run_json({"db", "export", database_, few, name(0), name(1), "--format", "bvh"});
   run_json({"db", "remove", database_, name(0)});
   const auto added = run_json({"db", "add", database_, few + "/" + name(0) + ".bvh", "--caption",
@@ -272,7 +272,7 @@ TEST_F(DbCommandsTest, ExportMergeAddAndCheckWorkTogether) {
 }
 
 TEST_F(DbCommandsTest, SnapshotRestoreUpgrade) {
-  const std::string copy = scratch_.path("copy.sqlite");
+  const std::string copy = scratch_ / "copy.sqlite";
   run_json({"db", "snapshot", database_, copy});
   EXPECT_EQ(run_program({"db", "snapshot", database_, copy}).exit_code, 1);
   run_json({"db", "remove", database_, name(0)});

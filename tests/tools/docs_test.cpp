@@ -44,8 +44,8 @@ std::vector<Block> code_blocks(const std::string& page) {
 
 /// Exit status of a shell that runs `script` in `folder`; its output into `log`.
 int run_shell(const std::string& script, const std::string& folder, std::string& log) {
-  const ScratchFolder scratch;
-  const std::string file = scratch.path("block.sh"), output = scratch.path("log");
+  const TestFolder scratch;
+  const std::string file = scratch / "block.sh", output = scratch / "log";
   const std::string programs = fs::path(REMOMASK_PROGRAM).parent_path().string();
   write_file_atomically(file, "export PATH=\"" + programs + ":$PATH\"\nexport REMOMASK_MODELS=\"" +
                                   kModels + "\"\ncd \"" + folder + "\"\n" + script);
@@ -62,14 +62,13 @@ INSTANTIATE_TEST_SUITE_P(Pages, DocsPage,
                          ::testing::Values("search.md", "generation.md", "editing.md"));
 
 TEST_P(DocsPage, EveryCommandRuns) {
-  const ScratchFolder scratch;
+  const TestFolder scratch;
   int run = 0;
   for (const Block& block : code_blocks(read_file(page()))) {
     if (block.language != "sh") continue;
     std::string log;
-    ASSERT_EQ(run_shell(block.text, scratch.path(""), log), 0)
-        << page() << ":" << block.line << "\n"
-        << log;
+    ASSERT_EQ(run_shell(block.text, scratch.path(), log), 0) << page() << ":" << block.line << "\n"
+                                                             << log;
     ++run;
   }
   EXPECT_GT(run, 5);
@@ -96,20 +95,20 @@ TEST(SearchPage, ShowsTheExampleAsItIs) {
 }
 
 TEST(SearchSample, FindsInTheShippedDatabase) {
-  const ScratchFolder scratch;
+  const TestFolder scratch;
   std::string log;
   const std::string example = "'" REMOMASK_SAMPLE "' ";
   ASSERT_EQ(run_shell(example + "$REMOMASK_MODELS/base.safetensors "
                                 "$REMOMASK_MODELS/motions.sqlite 'a person jumps'",
-                      scratch.path(""), log),
+                      scratch.path(), log),
             0)
       << log;
   const size_t first = log.find("1. ");
   ASSERT_NE(first, std::string::npos) << log;
   EXPECT_NE(log.substr(first, log.find('\n', first) - first).find("jump"), std::string::npos)
       << log;
-  EXPECT_EQ(run_shell(example, scratch.path(""), log), 2);
-  EXPECT_EQ(run_shell(example + "nothing nowhere walk", scratch.path(""), log), 1);
+  EXPECT_EQ(run_shell(example, scratch.path(), log), 2);
+  EXPECT_EQ(run_shell(example + "nothing nowhere walk", scratch.path(), log), 1);
   EXPECT_NE(log.find("nothing"), std::string::npos);
 }
 

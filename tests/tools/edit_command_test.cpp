@@ -40,7 +40,7 @@ double difference(const std::vector<float>& a, const std::vector<float>& b, int 
 class EditCommandTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scratch_ = new ScratchFolder;
+    scratch_ = new TestFolder;
     for (const char* file : {"walk.npy", "walk.bvh"}) {
       run_json({"generate", "a person walks forward", "--seconds", "4.15", "--seed", "1", "-o",
                 path(file)});
@@ -50,12 +50,12 @@ class EditCommandTest : public ::testing::Test {
     delete scratch_;
     scratch_ = nullptr;
   }
-  static std::string path(const std::string& name) { return scratch_->path(name); }
+  static std::string path(const std::string& name) { return *scratch_ / name; }
 
-  static ScratchFolder* scratch_;
+  static TestFolder* scratch_;
 };
 
-ScratchFolder* EditCommandTest::scratch_ = nullptr;
+TestFolder* EditCommandTest::scratch_ = nullptr;
 
 TEST_F(EditCommandTest, WhatIsNotNamedStaysBitForBit) {
   const auto made = run_json({"edit", path("walk.npy"), "--prompt", "someone waves", "--span",

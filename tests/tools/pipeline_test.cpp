@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 class PipelineTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scratch_ = new ScratchFolder;
+    scratch_ = new TestFolder;
     run_json({"procedural", "--db", path("motions.sqlite"), "--count", "120"});
     const ProgramResult trained = run_program(train_arguments("run"));
     ASSERT_EQ(trained.exit_code, 0) << trained.errors;
@@ -29,7 +29,7 @@ class PipelineTest : public ::testing::Test {
     scratch_ = nullptr;
   }
 
-  static std::string path(const std::string& name) { return scratch_->path(name); }
+  static std::string path(const std::string& name) { return *scratch_ / name; }
   static std::vector<std::string> train_arguments(const std::string& folder) {
     return {"--quiet",  "train", "all", "--db",      path("motions.sqlite"),
             "--preset", "tiny",  "-o",  path(folder)};
@@ -42,10 +42,10 @@ class PipelineTest : public ::testing::Test {
     return arguments;
   }
 
-  static ScratchFolder* scratch_;
+  static TestFolder* scratch_;
 };
 
-ScratchFolder* PipelineTest::scratch_ = nullptr;
+TestFolder* PipelineTest::scratch_ = nullptr;
 
 TEST_F(PipelineTest, ModelHoldsAllStagesAndSaysSo) {
   const auto info = run_json({"info", path("run/model.safetensors")});

@@ -14,22 +14,11 @@
 
 namespace remomask {
 
-ScratchFolder::ScratchFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "remomask_test_XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a scratch folder");
-  folder_ = name;
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
 ProgramResult run_program(const std::vector<std::string>& arguments,
                           const std::map<std::string, std::string>& environment,
                           double kill_after_seconds, int signal_number) {
-  const ScratchFolder scratch;
-  const std::string out = scratch.path("out"), err = scratch.path("err");
+  const TestFolder scratch;
+  const std::string out = scratch / "out", err = scratch / "err";
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("cannot fork");
   if (child == 0) {

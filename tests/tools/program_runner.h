@@ -1,10 +1,11 @@
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "tests/base/test_folder.h"
 
 namespace remomask {
 
@@ -22,18 +23,5 @@ ProgramResult run_program(const std::vector<std::string>& arguments,
 /// Runs with --json, expects success and parses the output. Throws
 /// std::runtime_error that shows both outputs otherwise.
 nlohmann::json run_json(std::vector<std::string> arguments);
-
-/// A folder of its own that is removed at the end.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
- private:
-  std::filesystem::path folder_;
-};
 
 }  // namespace remomask

@@ -82,27 +82,27 @@ TEST(Schema, TheCheckFindsFaults) {
 }
 
 TEST(Schema, DescribesMotions) {
-  const ScratchFolder folder;
+  const TestFolder folder;
   const Json made = run_json({"generate", "a person walks forward", "--seconds", "2", "--best-of",
-                              "2", "--influence", "-o", folder.path("walk.npy")});
+                              "2", "--influence", "-o", folder / "walk.npy"});
   EXPECT_EQ(fault_of("motions.json", made), "");
-  EXPECT_EQ(fault_of("motion.json", Json::parse(read_file(folder.path("walk.npy.json")))), "");
+  EXPECT_EQ(fault_of("motion.json", Json::parse(read_file(folder / "walk.npy.json"))), "");
   EXPECT_EQ(fault_of("motions.json", run_json({"generate", "a person bows", "--length", "likely",
-                                               "--no-retrieval", "-o", folder.path("bow.npy")})),
+                                               "--no-retrieval", "-o", folder / "bow.npy"})),
             "");
-  EXPECT_EQ(fault_of("motions.json",
-                     run_json({"edit", folder.path("walk.npy"), "--prompt", "someone waves",
-                               "--span", "0.5-1", "-o", folder.path("edit.npy")})),
-            "");
-  write_file_atomically(folder.path("script.txt"), "2 a person walks\n2 someone waves\n");
-  EXPECT_EQ(fault_of("motions.json", run_json({"generate", "--script", folder.path("script.txt"),
-                                               "-o", folder.path("script.npy")})),
+  EXPECT_EQ(
+      fault_of("motions.json", run_json({"edit", folder / "walk.npy", "--prompt", "someone waves",
+                                         "--span", "0.5-1", "-o", folder / "edit.npy"})),
+      "");
+  write_file_atomically(folder / "script.txt", "2 a person walks\n2 someone waves\n");
+  EXPECT_EQ(fault_of("motions.json", run_json({"generate", "--script", folder / "script.txt", "-o",
+                                               folder / "script.npy"})),
             "");
 }
 
 TEST(Schema, DescribesDatabases) {
-  const ScratchFolder folder;
-  const std::string database = folder.path("motions.sqlite");
+  const TestFolder folder;
+  const std::string database = folder / "motions.sqlite";
   EXPECT_EQ(fault_of("procedural.json", run_json({"procedural", "--db", database, "--count", "12",
                                                   "--seed", "18446744073709551615"})),
             "");
@@ -113,26 +113,26 @@ TEST(Schema, DescribesDatabases) {
   EXPECT_EQ(fault_of("clips.json", run_json({"db", "show", database, "#1"})), "");
   EXPECT_EQ(fault_of("check.json", run_json({"db", "check", database})), "");
   EXPECT_EQ(fault_of("file_check.json", run_json({"check", database})), "");
-  run_json({"db", "export", database, folder.path("clips"), "--format", "npy"});
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path("clips"))) {
+  run_json({"db", "export", database, folder / "clips", "--format", "npy"});
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "clips")) {
     if (entry.path().extension() != ".npy") continue;
-    const Json made = run_json({"convert", entry.path().string(), folder.path("walk.bvh")});
+    const Json made = run_json({"convert", entry.path().string(), folder / "walk.bvh"});
     EXPECT_EQ(fault_of("convert.json", made), "");
-    run_json({"convert", entry.path().string(), folder.path("figure.glb")});
-    EXPECT_EQ(fault_of("retarget.json",
-                       run_json({"retarget", entry.path().string(), "--character",
-                                 folder.path("figure.glb"), "-o", folder.path("moved.glb")})),
-              "");
+    run_json({"convert", entry.path().string(), folder / "figure.glb"});
+    EXPECT_EQ(
+        fault_of("retarget.json", run_json({"retarget", entry.path().string(), "--character",
+                                            folder / "figure.glb", "-o", folder / "moved.glb"})),
+        "");
     break;
   }
 }
 
 TEST(Schema, DescribesModels) {
-  const ScratchFolder folder;
-  const std::string database = folder.path("motions.sqlite");
+  const TestFolder folder;
+  const std::string database = folder / "motions.sqlite";
   run_json({"procedural", "--db", database, "--count", "60"});
   const Json trained = run_json({"train", "evaluator", "--db", database, "--preset", "tiny",
-                                 "--steps", "2", "--seed", "7", "-o", folder.path("run")});
+                                 "--steps", "2", "--seed", "7", "-o", folder / "run"});
   EXPECT_EQ(fault_of("train.json", trained), "");
   const Json info = run_json({"info", trained.at("file")});
   EXPECT_EQ(fault_of("model_info.json", info), "");

@@ -37,10 +37,10 @@ TEST(SearchCommand, FindsByMotionPartsAndBoth) {
 }
 
 TEST(SearchCommand, ReadsMotionFilesAndPiecesOfThem) {
-  const ScratchFolder scratch;
+  const TestFolder scratch;
   run_json({"db", "export", std::string(REMOMASK_SOURCE_DIR) + "/models/motions.sqlite",
-            scratch.path("clips"), kStored, "--format", "npy"});
-  const std::string walk = scratch.path("clips/" + kStored + ".npy");
+            scratch / "clips", kStored, "--format", "npy"});
+  const std::string walk = scratch / ("clips/" + kStored + ".npy");
   const auto whole = run_json({"search", "--like", walk, "-k", "1"});
   EXPECT_EQ(whole["hits"][0]["clip"], kStored);  // a file knows nothing of the clip it was
   EXPECT_GT(whole["hits"][0]["similarity"], 0.999);
@@ -65,8 +65,8 @@ TEST(SearchCommand, SaysWhenNothingFits) {
 }
 
 TEST(SearchCommand, RefusesBadQueriesClearly) {
-  const ScratchFolder scratch;
-  const std::string stranger = scratch.path("stranger.bvh");
+  const TestFolder scratch;
+  const std::string stranger = scratch / "stranger.bvh";
   write_file_atomically(stranger,
                         "HIERARCHY\nROOT snake\n{\n  OFFSET 0 0 0\n  CHANNELS 6 Xposition "
                         "Yposition Zposition Zrotation Xrotation Yrotation\n  End Site\n  {\n    "
@@ -80,7 +80,7 @@ TEST(SearchCommand, RefusesBadQueriesClearly) {
       {{"search", "--like-clip", kStored, "--parts", "tail"}, "'tail'"},
       {{"search", "--like-clip", "nobody"}, "'nobody'"},
       {{"search", "--like", stranger}, "stranger.bvh"},
-      {{"search", "--like", scratch.path("missing.bvh")}, "missing.bvh"},
+      {{"search", "--like", scratch / "missing.bvh"}, "missing.bvh"},
       {{"search", "walk", "--like-clip", kStored, "--text-weight", "0", "--motion-weight", "0"},
        "both zero"},
       {{"search", "walk", "--from", "1"}, "--like"},

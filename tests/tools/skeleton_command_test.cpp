@@ -56,9 +56,9 @@ std::string person(const std::function<std::string(const std::string&)>& name) {
 }
 
 TEST(SkeletonCommand, ShowsDrawsAndWritesWhatWasFound) {
-  const ScratchFolder scratch;
-  const std::string file = scratch.path("walk.bvh"), map = scratch.path("own.json"),
-                    picture = scratch.path("own.png");
+  const TestFolder scratch;
+  const std::string file = scratch / "walk.bvh", map = scratch / "own.json",
+                    picture = scratch / "own.png";
   write_file_atomically(file, person([](const std::string& name) { return name; }));
   const auto found = run_json({"skeleton", file, "--write-map", map, "--picture", picture});
   EXPECT_EQ(found["skeleton_map"], "rules");
@@ -74,21 +74,20 @@ TEST(SkeletonCommand, ShowsDrawsAndWritesWhatWasFound) {
   const auto again = run_json({"skeleton", file, "--skeleton-map", map});
   EXPECT_EQ(again["skeleton_map"], "own");
   EXPECT_EQ(again["found"], found["found"]);
-  const auto converted = run_json({"convert", file, scratch.path("a.npy"), "--skeleton-map", map});
+  const auto converted = run_json({"convert", file, scratch / "a.npy", "--skeleton-map", map});
   EXPECT_EQ(converted["skeleton_map"], "own");
-  EXPECT_EQ(
-      run_program({"sheet", file, "-o", scratch.path("s.png"), "--skeleton-map", map}).exit_code,
-      0);
+  EXPECT_EQ(run_program({"sheet", file, "-o", scratch / "s.png", "--skeleton-map", map}).exit_code,
+            0);
 }
 
 TEST(SkeletonCommand, AMapFileLeavesOtherSkeletonsAlone) {
-  const ScratchFolder scratch;
-  const std::string file = scratch.path("walk.bvh"), other = scratch.path("other.bvh"),
-                    map = scratch.path("own.json");
+  const TestFolder scratch;
+  const std::string file = scratch / "walk.bvh", other = scratch / "other.bvh",
+                    map = scratch / "own.json";
   write_file_atomically(file, person([](const std::string& name) { return name; }));
   write_file_atomically(other, person([](const std::string& name) { return "x_" + name; }));
   run_json({"skeleton", file, "--write-map", map});
-  const auto converted = run_json({"convert", other, scratch.path("a.npy"), "--skeleton-map", map});
+  const auto converted = run_json({"convert", other, scratch / "a.npy", "--skeleton-map", map});
   EXPECT_EQ(converted["skeleton_map"], "rules");
   ASSERT_EQ(converted["warnings"].size(), 1u);
   EXPECT_NE(converted["warnings"][0].get<std::string>().find("fits this skeleton"),
@@ -96,8 +95,8 @@ TEST(SkeletonCommand, AMapFileLeavesOtherSkeletonsAlone) {
 }
 
 TEST(SkeletonCommand, RefusesWithTheNamesOfTheFile) {
-  const ScratchFolder scratch;
-  const std::string file = scratch.path("camera.bvh");
+  const TestFolder scratch;
+  const std::string file = scratch / "camera.bvh";
   write_file_atomically(file,
                         "HIERARCHY\nROOT Camera\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition "
                         "Zposition\nJOINT Lens\n{\nOFFSET 0 0 1\nCHANNELS 0\n}\n}\nMOTION\n"

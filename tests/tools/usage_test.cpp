@@ -46,30 +46,30 @@ struct BrokenCase {
 };
 
 TEST(UsageTest, BadInputEndsWithOneAndSaysWhatToDo) {
-  const ScratchFolder scratch;
+  const TestFolder scratch;
   const auto write = [&](const std::string& name, const std::string& content) {
-    write_file_atomically(scratch.path(name), content);
-    return scratch.path(name);
+    write_file_atomically(scratch / name, content);
+    return scratch / name;
   };
   const std::string garbage = write("garbage.sqlite", std::string(5000, 'x'));
   const std::string model = write("garbage.safetensors", "no model");
   const std::string bvh = write("broken.bvh", "HIERARCHY\nROOT hip\n{\n  OFFSET 0 zero 0\n");
   const std::string text = write("notes.txt", "hello");
-  const std::string missing = scratch.path("missing.sqlite");
-  std::filesystem::create_directory(scratch.path("empty"));
+  const std::string missing = scratch / "missing.sqlite";
+  std::filesystem::create_directory(scratch / "empty");
   const std::vector<BrokenCase> cases = {
       {{"info", missing}, "missing.sqlite"},
       {{"info", garbage}, "garbage.sqlite"},
       {{"info", model}, "garbage.safetensors"},
-      {{"convert", bvh, scratch.path("o.npy")}, "broken.bvh:4"},
-      {{"convert", text, scratch.path("o.npy")}, "notes.txt"},
-      {{"convert", scratch.path("no.bvh"), scratch.path("o.npy")}, "no.bvh"},
-      {{"import", scratch.path("empty"), "--db", scratch.path("new.sqlite")}, "empty"},
+      {{"convert", bvh, scratch / "o.npy"}, "broken.bvh:4"},
+      {{"convert", text, scratch / "o.npy"}, "notes.txt"},
+      {{"convert", scratch / "no.bvh", scratch / "o.npy"}, "no.bvh"},
+      {{"import", scratch / "empty", "--db", scratch / "new.sqlite"}, "empty"},
       {{"search", "walk", "--db", missing}, "missing.sqlite"},
       {{"search", "walk", "--model", model}, "garbage.safetensors"},
-      {{"generate", "walk", "-o", scratch.path("no/folder/o.bvh")}, "folder"},
-      {{"generate", "walk", "-o", scratch.path("o.abc")}, "o.abc"},
-      {{"generate", "   ", "-o", scratch.path("o.bvh")}, "empty"},
+      {{"generate", "walk", "-o", scratch / "no/folder/o.bvh"}, "folder"},
+      {{"generate", "walk", "-o", scratch / "o.abc"}, "o.abc"},
+      {{"generate", "   ", "-o", scratch / "o.bvh"}, "empty"},
   };
   for (const BrokenCase& broken : cases) {
     const ProgramResult result = run_program(broken.arguments);
@@ -131,8 +131,8 @@ TEST(Usage, HelpKeepsLimitsOutOfItsColumns) {
 }
 
 TEST(Usage, ADamagedDatabaseIsAnsweredWithOneDocument) {
-  const ScratchFolder folder;
-  const std::string database = folder.path("motions.sqlite");
+  const TestFolder folder;
+  const std::string database = folder / "motions.sqlite";
   run_json({"procedural", "--db", database, "--count", "4"});
   std::fstream file(database, std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(database)) - 2000);
@@ -144,15 +144,15 @@ TEST(Usage, ADamagedDatabaseIsAnsweredWithOneDocument) {
 }
 
 TEST(Usage, MakingMotionsStopsSoon) {
-  const ScratchFolder folder;
+  const TestFolder folder;
   const auto begin = std::chrono::steady_clock::now();
   const ProgramResult result =
-      run_program({"procedural", "--db", folder.path("many.sqlite"), "--count", "100000"}, {},
+      run_program({"procedural", "--db", folder / "many.sqlite", "--count", "100000"}, {},
                   /*kill_after_seconds=*/1, SIGINT);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4));
   EXPECT_EQ(result.exit_code, 130) << result.errors;
   EXPECT_NE(result.errors.find("nothing was stored"), std::string::npos) << result.errors;
-  EXPECT_FALSE(std::filesystem::exists(folder.path("many.sqlite")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "many.sqlite"));
 }
 
 TEST(Usage, HelpVersionAndMistakesLoadNoNetwork) {
@@ -171,18 +171,18 @@ TEST(Usage, ShippedFilesComeFromTheChosenFolderOrAreMissed) {
 }
 
 TEST(Usage, AnInterruptedGenerationEndsSoonWithItsStatus) {
-  const ScratchFolder folder;
+  const TestFolder folder;
   const ProgramResult result = run_program(
-      {"generate", "a person walks around", "--seconds", "600", "-o", folder.path("long.npy")}, {},
+      {"generate", "a person walks around", "--seconds", "600", "-o", folder / "long.npy"}, {},
       /*kill_after_seconds=*/4, SIGINT);
   EXPECT_EQ(result.exit_code, 130) << result.errors;
   EXPECT_NE(result.errors.find("stopped"), std::string::npos) << result.errors;
-  EXPECT_FALSE(std::filesystem::exists(folder.path("long.npy")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "long.npy"));
 }
 
 TEST(Usage, TheInputIsNotReplacedUnasked) {
-  const ScratchFolder folder;
-  const std::string walk = folder.path("walk.npy");
+  const TestFolder folder;
+  const std::string walk = folder / "walk.npy";
   ASSERT_EQ(run_program({"generate", "a person walks", "--seconds", "2", "-o", walk}).exit_code, 0);
   const std::string before = read_file(walk);
   const ProgramResult refused = run_program({"convert", walk, walk});

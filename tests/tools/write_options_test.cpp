@@ -65,7 +65,7 @@ class WriteOptionsTest : public testing::Test {
   }
 
   std::string convert(const WrittenCase& written) {
-    const std::string path = scratch_.path("out" + written.extension);
+    const std::string path = scratch_ / ("out" + written.extension);
     std::vector<std::string> arguments = {"convert", source_, path, "--force"};
     arguments.insert(arguments.end(), written.options.begin(), written.options.end());
     answer_ = run_json(arguments);
@@ -105,8 +105,8 @@ class WriteOptionsTest : public testing::Test {
     return path.ends_with(".fbx") ? scenes::read_fbx(path) : scenes::read_gltf(path);
   }
 
-  ScratchFolder scratch_;
-  std::string source_ = scratch_.path("walk.npy");
+  TestFolder scratch_;
+  std::string source_ = scratch_ / "walk.npy";
   Motion expected_;
   nlohmann::json answer_;
 };
@@ -133,7 +133,7 @@ TEST_F(WriteOptionsTest, EveryChoiceOfNamesIsInTheFileAndReadBack) {
       expect_same_motion(written);
       std::vector<std::string> warnings;
       const rig::SkeletonView skeleton =
-          formats::read_skeleton(scratch_.path("out" + written.extension), {}, warnings);
+          formats::read_skeleton(scratch_ / ("out" + written.extension), {}, warnings);
       for (const std::string_view joint : preset.joints) {
         EXPECT_GE(skeleton.find_joint(joint), 0) << shown(written) << ": " << joint;
       }
@@ -147,7 +147,7 @@ TEST_F(WriteOptionsTest, EveryChoiceOfNamesIsInTheFileAndReadBack) {
 TEST_F(WriteOptionsTest, UnitsOfABvhAreThoseChosen) {
   for (const auto& [unit, scale] : {std::pair("cm", 100.0), std::pair("m", 1.0)}) {
     expect_same_motion({".bvh", {"--units", unit}, 20, 1 / scale});
-    const formats::Bvh bvh = formats::read_bvh(scratch_.path("out.bvh"));
+    const formats::Bvh bvh = formats::read_bvh(scratch_ / "out.bvh");
     const double standing = bvh.joints[1].offset[1] / scale;  // of the hips in the T-pose
     EXPECT_GT(standing, 0.9) << unit;
     EXPECT_LT(standing, 1.0) << unit;
@@ -196,7 +196,7 @@ TEST_F(WriteOptionsTest, RootMotionPutsTheHeadingOnTheRoot) {
       const std::vector<std::string> options =
           chosen ? std::vector<std::string>{"--root-motion"} : std::vector<std::string>{};
       expect_same_motion({extension, options});
-      const rig::SourceMotion motion = rig_of(scratch_.path("out" + std::string(extension)));
+      const rig::SourceMotion motion = rig_of(scratch_ / ("out" + std::string(extension)));
       const int root = motion.find_joint("Root");
       if (root < 0) {
         EXPECT_FALSE(chosen);
@@ -271,11 +271,11 @@ TEST_F(WriteOptionsTest, ArraysHoldPositionsPosesOrFeatures) {
 }
 
 TEST_F(WriteOptionsTest, SeveralClipsGoIntoOneFile) {
-  const std::string database = scratch_.path("some.sqlite");
+  const std::string database = scratch_ / "some.sqlite";
   run_json({"procedural", "--db", database, "--count", "3"});
   const auto clips = run_json({"db", "list", database})["clips"];
   for (const char* extension : {".glb", ".fbx"}) {
-    const std::string path = scratch_.path("all" + std::string(extension));
+    const std::string path = scratch_ / ("all" + std::string(extension));
     EXPECT_EQ(run_json({"db", "export", database, path, "--one-file"})["clips"], 3);
     for (const auto& clip : clips) {
       MotionFileOptions reading;
@@ -283,14 +283,14 @@ TEST_F(WriteOptionsTest, SeveralClipsGoIntoOneFile) {
       EXPECT_EQ(load_motion(path, reading).motion.frames, clip["frames"]) << path;
     }
   }
-  const scenes::GltfDocument document(scratch_.path("all.glb"));
+  const scenes::GltfDocument document(scratch_ / "all.glb");
   const auto& about = document.json()["animations"][0]["extras"]["remomask"];
   EXPECT_EQ(about["licence"], "MIT");
   EXPECT_FALSE(about["captions"].empty());
   for (const std::vector<std::string>& wrong :
-       {std::vector<std::string>{scratch_.path("all.bvh"), "--one-file"},
-        {scratch_.path("all.glb"), "--one-file", "--format", "glb"},
-        {scratch_.path("all.glb"), "--one-file", "--character", scratch_.path("all.glb")}}) {
+       {std::vector<std::string>{scratch_ / "all.bvh", "--one-file"},
+        {scratch_ / "all.glb", "--one-file", "--format", "glb"},
+        {scratch_ / "all.glb", "--one-file", "--character", scratch_ / "all.glb"}}) {
     std::vector<std::string> arguments = {"db", "export", database};
     arguments.insert(arguments.end(), wrong.begin(), wrong.end());
     EXPECT_NE(run_program(arguments).exit_code, 0) << wrong.back();
@@ -303,7 +303,7 @@ TEST_F(WriteOptionsTest, LengthsOfFilesAreInAnyUnit) {
   for (const double unit : {1.0, 0.1, 0.01, 0.001, 0.0254}) {
     Motion scaled = source;
     for (float& value : scaled.positions) value = static_cast<float>(value / unit);
-    const std::string path = scratch_.path("scaled.npy");
+    const std::string path = scratch_ / "scaled.npy";
     save_motion(path, scaled);
     const LoadedMotion loaded = load_motion(path);
     EXPECT_EQ(loaded.metres_per_unit, unit);

@@ -103,16 +103,16 @@ std::string leftovers_in(const std::string& folder) {
 class Torture : public testing::TestWithParam<Scenario> {
  protected:
   void SetUp() override {
-    prepare(start_.path("work"));
-    fs::copy(start_.path("work"), reference_.path("work"), fs::copy_options::recursive);
-    const std::string count = start_.path("calls");
+    prepare(start_ / "work");
+    fs::copy(start_ / "work", reference_ / "work", fs::copy_options::recursive);
+    const std::string count = start_ / "calls";
     const ProgramResult run =
-        run_program(in_folder(GetParam().command, reference_.path("work")),
+        run_program(in_folder(GetParam().command, reference_ / "work"),
                     {{"LD_PRELOAD", REMOMASK_INTERPOSE}, {"REMOMASK_CALLS", count}});
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     calls_ = std::stol(read_file(count));
     ASSERT_GT(calls_, 0);
-    expected_ = state_of(reference_.path("work"));
+    expected_ = state_of(reference_ / "work");
   }
 
   static void prepare(const std::string& folder) {
@@ -141,9 +141,9 @@ class Torture : public testing::TestWithParam<Scenario> {
 
   void try_fault(const std::string& fault, long call) {
     SCOPED_TRACE(fault + " at call " + std::to_string(call) + " of " + std::to_string(calls_));
-    const ScratchFolder scratch;
-    const std::string folder = scratch.path("work");
-    fs::copy(start_.path("work"), folder, fs::copy_options::recursive);
+    const TestFolder scratch;
+    const std::string folder = scratch / "work";
+    fs::copy(start_ / "work", folder, fs::copy_options::recursive);
     const Words command = in_folder(GetParam().command, folder);
     const ProgramResult broken = run_program(command, {{"LD_PRELOAD", REMOMASK_INTERPOSE},
                                                        {"REMOMASK_FAULT", fault},
@@ -181,7 +181,7 @@ class Torture : public testing::TestWithParam<Scenario> {
            run.errors.find("already") != std::string::npos;
   }
 
-  ScratchFolder start_, reference_;
+  TestFolder start_, reference_;
   long calls_ = 0;
   std::string expected_;
 };
