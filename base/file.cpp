@@ -1,6 +1,7 @@
 #include "base/file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,6 +23,7 @@ namespace {
 
 constexpr uint64_t kFirstPiece = 4096;
 constexpr uint64_t kMaxPipeBytes = uint64_t{1} << 28;
+constexpr int kWriterMilliseconds = 3000;
 
 std::string errno_text() { return std::strerror(errno); }
 
@@ -39,6 +41,20 @@ class Descriptor {
   int fd_;
 };
 
+/// First byte of a pipe that was opened without waiting, nothing if it is empty. Reads block again
+/// from here on: a writer that is there has the time that it needs.
+std::string first_of_pipe(int descriptor, const std::string& path) {
+  pollfd wait{descriptor, POLLIN, 0};
+  ::poll(&wait, 1, kWriterMilliseconds);
+  char byte = 0;
+  const ssize_t count = ::read(descriptor, &byte, 1);
+  if (count == 0 && (wait.revents & POLLHUP) == 0) {
+    throw FileError(path, 0, "is a pipe into which nothing writes; start its writer first");
+  }
+  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+  return count == 1 ? std::string(1, byte) : std::string();
+}
+
 void sync_path(const std::string& path, int flags) {
   Descriptor descriptor(::open(path.c_str(), flags));
   if (descriptor.get() >= 0) ::fsync(descriptor.get());
@@ -47,7 +63,8 @@ void sync_path(const std::string& path, int flags) {
 }  // namespace
 
 std::string read_bounded_file(const std::string& path, uint64_t max_bytes) {
-  Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // Opening a pipe would wait for its writer, who may never come.
+  Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (descriptor.get() < 0) throw FileError(path, 0, "cannot open: " + errno_text());
   struct stat status {};
   if (::fstat(descriptor.get(), &status) != 0 || S_ISDIR(status.st_mode)) {
@@ -66,6 +83,11 @@ std::string read_bounded_file(const std::string& path, uint64_t max_bytes) {
   // One byte more than is there finds the end without another allocation.
   std::string content(std::max<uint64_t>(stated + 1, kFirstPiece), '\0');
   size_t done = 0;
+  if (S_ISFIFO(status.st_mode)) {
+    const std::string first = first_of_pipe(descriptor.get(), path);
+    content.replace(0, first.size(), first);
+    done = first.size();
+  }
   while (true) {
     if (done == content.size()) {
       content.resize(done + std::min<uint64_t>(done, max_bytes - done + 1));

@@ -7,10 +7,14 @@ namespace remomask {
 namespace {
 
 constexpr size_t kMaxReason = 160;
+/// A value takes up to 100 bytes of memory, whatever the two that it may have in the file.
+constexpr int64_t kMaxValues = 2'000'000;
 
-/// Looks only at brackets outside of strings, which is all that decides the depth of valid JSON.
-bool is_too_deep(std::string_view text) {
+/// Why a text is not parsed, or null. Looks only at brackets and commas outside of strings, which
+/// are all that decides depth and number of values of valid JSON.
+const char* excess_of(std::string_view text) {
   int depth = 0;
+  int64_t values = 0;
   bool in_string = false;
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -19,21 +23,22 @@ bool is_too_deep(std::string_view text) {
       if (c == '"') in_string = false;
     } else if (c == '"') {
       in_string = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kMaxJsonDepth) return true;
+    } else if (c == '[' || c == '{' || c == ',') {
+      if (++values > kMaxValues) return "it holds more than two million values";
+      if (c != ',' && ++depth > kMaxJsonDepth) return "it is nested deeper than 100 levels";
     } else if (c == ']' || c == '}') {
       --depth;
     }
   }
-  return false;
+  return nullptr;
 }
+static_assert(kMaxJsonDepth == 100, "the message says 100");
 
 }  // namespace
 
 nlohmann::json parse_json(std::string_view text) {
-  if (is_too_deep(text)) {
-    throw nlohmann::json::other_error::create(
-        501, "it is nested deeper than " + std::to_string(kMaxJsonDepth) + " levels", nullptr);
+  if (const char* excess = excess_of(text)) {
+    throw nlohmann::json::other_error::create(501, excess, nullptr);
   }
   return nlohmann::json::parse(text);
 }
@@ -48,7 +53,7 @@ std::string json_reason(const nlohmann::json::exception& error) {
 }
 
 nlohmann::json try_parse_json(std::string_view text) {
-  if (is_too_deep(text)) return nlohmann::json(nlohmann::json::value_t::discarded);
+  if (excess_of(text) != nullptr) return nlohmann::json(nlohmann::json::value_t::discarded);
   return nlohmann::json::parse(text, nullptr, false);
 }
 

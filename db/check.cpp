@@ -13,6 +13,7 @@
 #include "db/clip_hash.h"
 #include "db/clip_rows.h"
 #include "db/clip_speed.h"
+#include "db/page_checksums.h"
 #include "db/schema.h"
 #include "db/sqlite.h"
 #include "remomask/error.h"
@@ -53,7 +54,7 @@ class Checker {
     std::stable_sort(
         report_.defects.begin(), report_.defects.end(),
         [](const Defect& left, const Defect& right) { return left.clip_id < right.clip_id; });
-    report_.has_checksums = checksums_;
+    report_.has_checksums = connection_.integer("PRAGMA user_version") >= kPageChecksumVersion;
     return std::move(report_);
   }
 
@@ -80,6 +81,10 @@ class Checker {
   }
 
   void check_pages() {
+    for (const int64_t page : damaged_pages(connection_.handle())) {
+      add(0,
+          fmt::format("page {} of the file is damaged (its checksum differs); {}", page, kRestore));
+    }
     SqliteStatement rows(connection_, "PRAGMA integrity_check");
     while (rows.step()) {
       if (rows.text(0) != "ok") add(0, "SQLite's check says: " + rows.text(0) + "; " + kRestore);

@@ -17,7 +17,7 @@ struct Defect {
 struct CheckReport {
   int64_t clips = 0, captions = 0, embeddings = 0;  ///< looked at
   std::vector<Defect> defects;                      ///< first of the whole, then by clip
-  bool has_checksums = true;  ///< false: a format before 4, in which damage of numbers can hide
+  bool has_checksums = true;  ///< false: a format before 6, in which damage can hide
 };
 
 /// Looks at everything that is stored: the file's pages (SQLite's own check),

@@ -10,6 +10,7 @@
 #include "db/clip_rows.h"
 #include "db/clip_speed.h"
 #include "db/database.h"
+#include "db/page_checksums.h"
 #include "remomask/error.h"
 
 namespace remomask::db {
@@ -159,7 +160,7 @@ CREATE TABLE caption_vector (
 )sql";
 
 constexpr const char* kVersions[] = {kVersion1, kVersion2, kVersion3, kVersion4, kVersion5};
-static_assert(std::size(kVersions) == kSchemaVersion);
+static_assert(std::size(kVersions) == kUnsealedVersion);
 
 void set_version(const SqliteConnection& connection, int64_t version) {
   connection.execute(("PRAGMA user_version = " + std::to_string(version)).c_str());
@@ -263,7 +264,7 @@ const SchemaObjects& expected_objects(int64_t version) {
   const auto found = known.find(version);
   if (found != known.end()) return found->second;
   const SqliteConnection memory(":memory:", SqliteMode::create);
-  for (int64_t i = 0; i < version; ++i) memory.execute(kVersions[i]);
+  for (int64_t i = 0; i < std::min(version, kUnsealedVersion); ++i) memory.execute(kVersions[i]);
   return known.emplace(version, schema_objects(memory)).first->second;
 }
 
@@ -277,7 +278,8 @@ void require_own_objects(const SqliteConnection& connection, int64_t version) {
       throw Error(connection.path() + ": holds the " + type + " '" + name +
                   "', which remomask did not make and which could run statements of its own; "
                   "if you trust the file, remove it with the sqlite3 program: DROP " +
-                  type + " " + name);
+                  type + " " + name + ", then run: remomask db upgrade " + connection.path() +
+                  " --accept-changes");
     }
     if (own->second != sql) {
       throw Error(connection.path() + ": the " + type + " '" + name +
@@ -313,6 +315,7 @@ bool is_empty_database(const SqliteConnection& connection) {
 }
 
 void create_schema(const SqliteConnection& connection) {
+  reserve_page_checksums(connection.handle());
   connection.execute("PRAGMA journal_mode = WAL");
   SqliteScope scope(connection);
   // Another program may have made it between our look and our lock.
@@ -339,12 +342,16 @@ void check_schema(const SqliteConnection& connection) {
   if (version < 1) {
     throw Error(path + ": has no format version: the database is damaged; restore a backup");
   }
+  if (version >= kPageChecksumVersion && !has_page_checksums(connection.handle())) {
+    throw Error(path + ": its first page is damaged (it denies the checksums of this format); " +
+                "restore a backup");
+  }
   require_own_objects(connection, version);
   connection.trust_schema();
 }
 
 void upgrade_schema(const SqliteConnection& connection) {
-  if (connection.integer("PRAGMA user_version") == kSchemaVersion) return;
+  if (connection.integer("PRAGMA user_version") >= kUnsealedVersion) return;
   SqliteScope scope(connection);
   // Another program may have done it between our look and our lock.
   if (connection.integer("PRAGMA user_version") == 1) upgrade_from_1(connection);
@@ -352,6 +359,16 @@ void upgrade_schema(const SqliteConnection& connection) {
   if (connection.integer("PRAGMA user_version") == 3) upgrade_from_3(connection);
   if (connection.integer("PRAGMA user_version") == 4) upgrade_from_4(connection);
   scope.commit();
+}
+
+void seal_pages(const SqliteConnection& connection) {
+  // A rollback journal would be played back without room for checksums onto pages that have it.
+  connection.execute("PRAGMA journal_mode = WAL");
+  reserve_page_checksums(connection.handle());
+  connection.execute("VACUUM");
+  // In WAL mode the file itself changes, and shrinks, at a checkpoint.
+  connection.execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  if (has_page_checksums(connection.handle())) set_version(connection, kSchemaVersion);
 }
 
 void renew_identity(const SqliteConnection& connection) {

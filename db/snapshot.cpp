@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/file.h"
+#include "db/page_checksums.h"
 #include "db/schema.h"
 #include "db/sqlite.h"
 #include "remomask/error.h"
@@ -22,6 +23,12 @@ void copy_pages(const SqliteConnection& from, const SqliteConnection& to, const 
   // Without it another program's commit would make the copy start again.
   from.execute("BEGIN");
   from.integer("SELECT count(*) FROM sqlite_master");
+  if (has_page_checksums(from.handle())) {
+    expect_page_checksums(to.handle());
+  } else if (has_page_checksums(to.handle())) {
+    throw Error(to.path() + ": its pages have checksums and those of " + from.path() +
+                " do not; run: remomask db upgrade " + from.path());
+  }
   sqlite3_backup* backup = sqlite3_backup_init(to.handle(), "main", from.handle(), "main");
   if (!backup) to.fail();
   int code = SQLITE_OK;
@@ -56,7 +63,8 @@ void keep_no_log(const SqliteConnection& connection) {
 }
 
 bool is_damage(int code) {
-  return (code & 0xff) == SQLITE_CORRUPT || (code & 0xff) == SQLITE_NOTADB;
+  return code == SQLITE_IOERR_DATA || (code & 0xff) == SQLITE_CORRUPT ||
+         (code & 0xff) == SQLITE_NOTADB;
 }
 
 bool has_log(const std::string& path) {
@@ -145,12 +153,18 @@ RestoreReport restore_database(const std::string& snapshot, const std::string& p
     }
   }
   upgrade_schema(*copy);
+  if (!has_page_checksums(copy->handle())) {
+    seal_pages(*copy);
+    keep_no_log(*copy);
+  }
   renew_identity(*copy);
   if (fs::exists(path) && can_be_written(path)) {
     const SqliteConnection to(path, SqliteMode::read_write);
     if (!is_empty_database(to) && to.integer("PRAGMA application_id") != kApplicationId) {
       throw Error(path + ": belongs to another program; name another file");
     }
+    // A rollback journal would be played back without room for checksums onto pages that have it.
+    to.execute("PRAGMA journal_mode = WAL");
     copy_pages(*copy, to, "restore " + path, monitor);
     return report;
   }

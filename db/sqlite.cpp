@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "db/page_checksums.h"
 #include "remomask/error.h"
 
 namespace remomask::db {
@@ -43,6 +44,9 @@ std::string sqlite_remedy(int code) {
       return "the disk is full; free some space and run the same command again, what was "
              "committed before is safe";
     case SQLITE_IOERR:
+      if (code == SQLITE_IOERR_DATA) {
+        return "a page of the file is damaged (its checksum differs); restore a snapshot";
+      }
       return "the disk cannot be read or written; check its free space and its health";
     case SQLITE_READONLY:
     case SQLITE_PERM:
@@ -74,6 +78,10 @@ SqliteConnection::SqliteConnection(std::string path, SqliteMode mode) : path_(st
   if (exists && std::filesystem::is_directory(path_)) {
     throw Error(path_ + ": is a folder; name the database file itself");
   }
+  // Opening a pipe would wait for its writer.
+  if (exists && !std::filesystem::is_regular_file(path_)) {
+    throw Error(path_ + ": is not a regular file; name the database file itself");
+  }
   if (exists && mode != SqliteMode::read_only && ::access(path_.c_str(), W_OK) != 0) {
     throw Error(path_ + ": cannot be written; check its permissions, or copy it");
   }
@@ -96,8 +104,8 @@ SqliteConnection::SqliteConnection(std::string path, SqliteMode mode) : path_(st
 SqliteConnection::~SqliteConnection() { close(); }
 
 void SqliteConnection::open(const std::string& uri, int flags) {
-  const int code = sqlite3_open_v2(uri.c_str(), &handle_,
-                                   flags | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
+  const int code = sqlite3_open_v2(
+      uri.c_str(), &handle_, flags | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, page_checksum_vfs());
   if (code == SQLITE_OK) return;
   if (!handle_) fail(code);
   fail();

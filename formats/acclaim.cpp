@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <numbers>
 
+#include "base/bounded_file.h"
 #include "formats/acclaim_lines.h"
 #include "formats/asf_skeleton.h"
 #include "formats/bvh_scanner.h"
+#include "formats/motion_reading.h"
 #include "remomask/error.h"
 #include "text/encoding.h"
 
@@ -210,9 +212,12 @@ AcclaimMotion parse_acclaim(const std::string& asf, const std::string& asf_path,
 }
 
 AcclaimMotion read_amc(const std::string& path) {
-  const std::string amc = text::read_text_file(path);
+  const auto read = [](const std::string& file) {
+    return text::utf8_text(read_bounded_file(file, kMaxMotionText));
+  };
+  const std::string amc = read(path);
   const std::string asf_path = find_asf(path);
-  return parse_acclaim(text::read_text_file(asf_path), asf_path, amc, path);
+  return parse_acclaim(read(asf_path), asf_path, amc, path);
 }
 
 }  // namespace remomask::formats

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/bounded_file.h"
 #include "formats/bvh.h"
 #include "formats/bvh_hierarchy.h"
 #include "formats/decimal.h"
+#include "formats/motion_reading.h"
 #include "remomask/error.h"
 #include "text/encoding.h"
 
@@ -191,7 +193,7 @@ Bvh parse_bvh(std::string_view text, const std::string& path, const BvhReading& 
 }
 
 Bvh read_bvh(const std::string& path, const BvhReading& reading) {
-  const std::string text = text::read_text_file(path);
+  const std::string text = text::utf8_text(read_bounded_file(path, kMaxMotionText));
   return parse_utf8_bvh(text, path, reading);
 }
 

@@ -26,6 +26,9 @@ bool is_readable_motion(const std::string& path);
 /// More frames than any take has; what is read is bounded by it.
 constexpr int kMaxFrames = 4'000'000;
 
+/// Bytes of a motion file that is text, which is held beside the numbers that are read from it.
+constexpr uint64_t kMaxMotionText = uint64_t{1} << 29;
+
 /// Throws FileError if a file of so many frames is not read.
 void check_frame_count(size_t frames, const std::string& path);
 

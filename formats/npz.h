@@ -21,8 +21,8 @@ struct NpzArrays {
 
 /// What is unpacked at most, whatever the file says.
 struct NpzLimits {
-  uint64_t array_bytes = uint64_t{1} << 29;
-  uint64_t file_bytes = uint64_t{1} << 30;
+  uint64_t array_bytes = uint64_t{1} << 28;
+  uint64_t file_bytes = uint64_t{1} << 28;
 };
 
 /// Reads the arrays called `wanted`; others are neither unpacked nor looked at. Throws FileError

@@ -12,6 +12,12 @@ namespace remomask::formats {
 namespace {
 
 constexpr const char* kMotionHash = "motion_hash";
+constexpr const char* kChecksum = "checksum";  // of the sidecar without it
+
+/// On one line. Text from files may hold bytes that are not UTF-8: shown, not fatal.
+std::string text_of(const nlohmann::json& sidecar, int indent = -1) {
+  return sidecar.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 }  // namespace
 
@@ -20,10 +26,8 @@ std::string sidecar_path(const std::string& motion_path) { return motion_path + 
 void write_sidecar(const std::string& motion_path, nlohmann::json sidecar,
                    std::string_view motion_bytes) {
   sidecar[kMotionHash] = content_hash(motion_bytes);
-  // Text from files may hold bytes that are not UTF-8: shown, not fatal.
-  write_file_atomically(
-      sidecar_path(motion_path),
-      sidecar.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  sidecar[kChecksum] = content_hash(text_of(sidecar));
+  write_file_atomically(sidecar_path(motion_path), text_of(sidecar, 1) + "\n");
 }
 
 std::optional<nlohmann::json> read_sidecar(const std::string& motion_path) {
@@ -37,6 +41,15 @@ std::optional<nlohmann::json> read_sidecar(const std::string& motion_path) {
       throw FileError(path, 0,
                       "was written for another motion than " + motion_path +
                           " is now (the file was changed or replaced); remove one of them");
+    }
+    if (sidecar.contains(kChecksum)) {
+      const nlohmann::json stated = sidecar.at(kChecksum);
+      sidecar.erase(kChecksum);
+      if (stated != content_hash(text_of(sidecar))) {
+        throw FileError(path, 0,
+                        "was changed since it was written (its checksum differs); remove it, or "
+                        "make the motion again");
+      }
     }
     return sidecar;
   } catch (const nlohmann::json::exception& error) {

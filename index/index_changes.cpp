@@ -220,8 +220,11 @@ std::optional<IndexDelta> read_index_delta(const std::string& path, const IndexH
                    description.at("retriever").get<std::string>(), description.value("writer", "")};
     const auto added = description.at("added").get<size_t>();
     const auto dropped = description.at("dropped").get<size_t>();
+    // Each by itself first, since a sum of what a stranger claims can begin again at zero.
+    const size_t most = whole.size() / sizeof(int64_t);
     const auto numbers = added * static_cast<size_t>(base.width);
-    if (whole.size() != (added + dropped) * sizeof(int64_t) + numbers * sizeof(float)) {
+    if (added > most || dropped > most ||
+        whole.size() != (added + dropped) * sizeof(int64_t) + numbers * sizeof(float)) {
       throw FileError(file, 0, std::string("the index is damaged; ") + kUpdate);
     }
     std::string_view rest = whole;

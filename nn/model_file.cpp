@@ -22,12 +22,12 @@ std::string kind_of(const std::string& tensor_name) {
 /// Every stage with its config, and with its tensors where `wanted` accepts its kind.
 std::map<std::string, ModelStage> read_stages(
     const std::string& path, const std::function<bool(const std::string& kind)>& wanted) {
-  TensorFile file =
-      load_safetensors(path, [&](const std::string& name) { return wanted(kind_of(name)); });
-  if (file.metadata["format"] != kModelFormat) {
+  // Looks at the header alone first: a foreign file can hold more than the memory.
+  auto metadata = load_safetensors(path, [](const std::string&) { return false; }).metadata;
+  if (metadata["format"] != kModelFormat) {
     throw FileError(path, 0, "is a safetensors file, but not a remomask model");
   }
-  const std::string version = file.metadata["version"];
+  const std::string version = metadata["version"];
   if (version != std::to_string(kModelVersion)) {
     throw FileError(path, 0,
                     "has model version " + version + ", this program reads version " +
@@ -35,13 +35,15 @@ std::map<std::string, ModelStage> read_stages(
   }
   std::map<std::string, ModelStage> stages;
   try {
-    const auto configs = parse_json(file.metadata["stages"]);
+    const auto configs = parse_json(metadata["stages"]);
     for (const auto& [kind, config] : configs.items()) {
       stages[kind] = {kind, config, {}};
     }
   } catch (const nlohmann::json::exception& error) {
     throw FileError(path, 0, "broken stage list: " + json_reason(error));
   }
+  const TensorFile file =
+      load_safetensors(path, [&](const std::string& name) { return wanted(kind_of(name)); });
   for (const auto& [name, tensor] : file.tensors) {
     const size_t slash = name.find('/');
     const auto stage = stages.find(kind_of(name));

@@ -9,9 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/content_hasher.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
+#include "nn/safetensors_check.h"
 #include "remomask/error.h"
 
 namespace remomask::nn {
@@ -42,6 +44,7 @@ at::ScalarType type_of(const std::string& path, const std::string& name) {
 }
 
 constexpr uint64_t kMaxHeaderBytes = 64u << 20;
+constexpr size_t kPieceBytes = 1u << 20;
 constexpr const char* kMetadata = "__metadata__";
 constexpr const char* kTensorChecksums = "tensor_checksums";  // a JSON object as text, by name
 constexpr const char* kHeaderChecksum = "header_checksum";    // of the header without itself
@@ -74,10 +77,12 @@ nlohmann::json take_checksums(const std::string& path, nlohmann::json& header) {
 /// Reads parts of a file, so that one stage of a large model costs only its own bytes.
 class FileBytes {
  public:
-  explicit FileBytes(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
+  explicit FileBytes(const std::string& path) : path_(path) {
+    // Not of a device or a pipe; opening the latter would wait for a writer.
     std::error_code failure;
     size_ = std::filesystem::file_size(path, failure);
     if (failure) throw FileError(path, 0, "cannot open: " + failure.message());
+    stream_.open(path, std::ios::binary);
     if (!stream_) throw FileError(path, 0, "cannot open; check its permissions");
   }
   uint64_t size() const { return size_; }
@@ -128,9 +133,43 @@ void save_safetensors(const std::string& path, const TensorMap& tensors,
   write_file_atomically(path, content);
 }
 
-TensorFile load_safetensors(const std::string& path,
-                            const std::function<bool(const std::string& name)>& wanted) {
-  FileBytes source(path);
+namespace {
+
+/// A tensor as the header says it lies in the file.
+struct StoredTensor {
+  std::string name;
+  at::ScalarType type;
+  std::vector<int64_t> shape;
+  uint64_t begin = 0, bytes = 0;  // in the file
+};
+
+struct Header {
+  std::vector<StoredTensor> tensors;
+  std::map<std::string, std::string> metadata;
+  nlohmann::json checksums;  // null: the file has none
+};
+
+StoredTensor stored_tensor(const std::string& path, const std::string& name,
+                           const nlohmann::json& entry, uint64_t data_start, uint64_t data_bytes) {
+  const at::ScalarType type = type_of(path, entry.at("dtype").get<std::string>());
+  const auto shape = entry.at("shape").get<std::vector<int64_t>>();
+  const auto range = entry.at("data_offsets").get<std::vector<uint64_t>>();
+  uint64_t elements = 1;
+  for (const int64_t size : shape) {
+    if (size < 0 || (size > 0 && elements > data_bytes / static_cast<uint64_t>(size) + 1)) {
+      throw FileError(path, 0, "tensor \"" + name + "\" has an impossible shape");
+    }
+    elements *= static_cast<uint64_t>(size);
+  }
+  const uint64_t bytes = elements * c10::elementSize(type);
+  if (range.size() != 2 || range[0] > range[1] || range[1] > data_bytes ||
+      range[1] - range[0] != bytes) {
+    throw FileError(path, 0, "tensor \"" + name + "\" lies outside the file (truncated?)");
+  }
+  return {name, type, shape, data_start + range[0], bytes};
+}
+
+Header read_header(const std::string& path, FileBytes& source) {
   if (source.size() < 8) throw FileError(path, 0, "too short for a safetensors file");
   uint64_t head_bytes = 0;
   source.read(0, 8, &head_bytes);
@@ -139,50 +178,85 @@ TensorFile load_safetensors(const std::string& path,
   }
   std::string head(head_bytes, '\0');
   source.read(8, head_bytes, head.data());
-  TensorFile file;
   const uint64_t data_start = 8 + head_bytes;
-  const uint64_t data_bytes = source.size() - data_start;
+  nlohmann::json json = parse_json(head);
+  Header header;
+  header.checksums = take_checksums(path, json);
+  uint64_t data_end = data_start;
+  for (const auto& [name, entry] : json.items()) {
+    if (name == kMetadata) {
+      header.metadata = entry.get<std::map<std::string, std::string>>();
+      continue;
+    }
+    header.tensors.push_back(
+        stored_tensor(path, name, entry, data_start, source.size() - data_start));
+    data_end = std::max(data_end, header.tensors.back().begin + header.tensors.back().bytes);
+  }
+  if (data_end != source.size()) {
+    throw FileError(path, 0, "bytes follow the last tensor" + std::string(kDamaged));
+  }
+  return header;
+}
+
+void compare_checksum(const std::string& path, const Header& header, const std::string& name,
+                      const std::string& checksum) {
+  if (header.checksums.at(name) == checksum) return;
+  throw FileError(path, 0, "the checksum of tensor \"" + name + "\" differs" + kDamaged);
+}
+
+/// Calls `read` with the open file; what the JSON library throws becomes a FileError.
+template <typename Read>
+void reading(const std::string& path, const Read& read) {
   try {
-    auto header = parse_json(head);
-    const nlohmann::json checksums = take_checksums(path, header);
-    uint64_t data_end = 0;
-    for (const auto& [name, entry] : header.items()) {
-      if (name == kMetadata) {
-        file.metadata = entry.get<std::map<std::string, std::string>>();
-        continue;
-      }
-      const at::ScalarType type = type_of(path, entry.at("dtype").get<std::string>());
-      const auto shape = entry.at("shape").get<std::vector<int64_t>>();
-      const auto range = entry.at("data_offsets").get<std::vector<uint64_t>>();
-      uint64_t elements = 1;
-      for (const int64_t size : shape) {
-        if (size < 0 || (size > 0 && elements > data_bytes / static_cast<uint64_t>(size) + 1)) {
-          throw FileError(path, 0, "tensor \"" + name + "\" has an impossible shape");
-        }
-        elements *= static_cast<uint64_t>(size);
-      }
-      const uint64_t bytes = elements * c10::elementSize(type);
-      if (range.size() != 2 || range[0] > range[1] || range[1] > data_bytes ||
-          range[1] - range[0] != bytes) {
-        throw FileError(path, 0, "tensor \"" + name + "\" lies outside the file (truncated?)");
-      }
-      data_end = std::max(data_end, range[1]);
-      if (wanted && !wanted(name)) continue;
-      at::Tensor tensor = at::empty(shape, at::TensorOptions().dtype(type));
-      if (bytes > 0) source.read(data_start + range[0], bytes, tensor.data_ptr());
-      if (!checksums.is_null() && checksums.at(name) != tensor_checksum(tensor)) {
-        throw FileError(path, 0, "the checksum of tensor \"" + name + "\" differs" + kDamaged);
-      }
-      file.tensors.emplace(name, tensor);
-    }
-    if (data_end != data_bytes) {
-      throw FileError(path, 0, "bytes follow the last tensor" + std::string(kDamaged));
-    }
-    file.has_checksums = !checksums.is_null();
+    FileBytes source(path);
+    read(source, read_header(path, source));
   } catch (const nlohmann::json::exception& error) {
     throw FileError(path, 0, "broken safetensors header: " + json_reason(error));
   }
+}
+
+}  // namespace
+
+TensorFile load_safetensors(const std::string& path,
+                            const std::function<bool(const std::string& name)>& wanted) {
+  TensorFile file;
+  reading(path, [&](FileBytes& source, const Header& header) {
+    for (const StoredTensor& stored : header.tensors) {
+      if (wanted && !wanted(stored.name)) continue;
+      at::Tensor tensor = at::empty(stored.shape, at::TensorOptions().dtype(stored.type));
+      if (stored.bytes > 0) source.read(stored.begin, stored.bytes, tensor.data_ptr());
+      if (!header.checksums.is_null()) {
+        compare_checksum(path, header, stored.name, tensor_checksum(tensor));
+      }
+      file.tensors.emplace(stored.name, tensor);
+    }
+    file.metadata = header.metadata;
+    file.has_checksums = !header.checksums.is_null();
+  });
   return file;
+}
+
+CheckedTensors check_safetensors(const std::string& path) {
+  CheckedTensors checked;
+  reading(path, [&](FileBytes& source, const Header& header) {
+    std::vector<char> piece(kPieceBytes);
+    for (const StoredTensor& stored : header.tensors) {
+      if (header.checksums.is_null()) break;
+      ContentHasher hasher;
+      for (uint64_t done = 0; done < stored.bytes;) {
+        const uint64_t count = std::min<uint64_t>(piece.size(), stored.bytes - done);
+        source.read(stored.begin + done, count, piece.data());
+        hasher.add({piece.data(), count});
+        done += count;
+      }
+      compare_checksum(path, header, stored.name, hasher.hash());
+    }
+    const auto format = header.metadata.find("format");
+    if (format != header.metadata.end()) checked.format = format->second;
+    checked.tensors = static_cast<int64_t>(header.tensors.size());
+    checked.has_checksums = !header.checksums.is_null();
+  });
+  return checked;
 }
 
 }  // namespace remomask::nn

@@ -52,6 +52,8 @@ CheckedFile check_motion_file(const std::string& path) {
 CheckedFile check_file(const std::string& path, Program& program) {
   try {
     if (!std::filesystem::exists(path)) throw FileError(path, 0, "there is no such file");
+    // Opening a pipe would wait for its writer.
+    if (!std::filesystem::is_regular_file(path)) throw FileError(path, 0, "is not a regular file");
     if (is_database(path)) return check_database_file(path, program);
     if (formats::is_readable_motion(path)) return check_motion_file(path);
     return core(program).check_file(path);
@@ -76,8 +78,9 @@ void print_file(const std::string& path, const CheckedFile& checked) {
   if (!checked.defects.empty()) return;
   fmt::print("{}: {} in order ({}){}\n", path, checked.kind, checked.content,
              checked.has_checksums ? ""
-                                   : "; it was written without checksums, so that damage of "
-                                     "numbers cannot be seen (a database: remomask db upgrade)");
+                                   : "; it was written without checksums of all that it holds, so "
+                                     "that some damage cannot be seen (a database: remomask db "
+                                     "upgrade)");
 }
 
 }  // namespace

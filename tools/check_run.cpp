@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <fstream>
+
 #include "base/counted.h"
-#include "base/file.h"
 #include "index/index_changes.h"
 #include "index/index_file.h"
-#include "nn/safetensors.h"
+#include "nn/model_file.h"
+#include "nn/safetensors_check.h"
 #include "remomask/error.h"
 #include "tools/check_command.h"
 
@@ -12,8 +14,13 @@ namespace remomask::tools {
 
 namespace {
 
-bool is_index(const std::string& content) {
-  return content.ends_with("RMMINDEX") || content.ends_with("RMMDELTA");
+bool is_index(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (file.tellg() < 8) return false;
+  file.seekg(-8, std::ios::end);
+  std::string magic(8, '\0');
+  file.read(magic.data(), 8);
+  return magic == "RMMINDEX" || magic == "RMMDELTA";
 }
 
 CheckedFile check_index(const std::string& path) {
@@ -32,20 +39,20 @@ CheckedFile check_index(const std::string& path) {
 }
 
 CheckedFile check_tensors(const std::string& path) {
-  const nn::TensorFile file = nn::load_safetensors(path);
-  const auto format = file.metadata.find("format");
-  const std::string name = format == file.metadata.end() ? "" : format->second;
-  return {.kind = name == "remomask-model"        ? "model"
-                  : name == "remomask-checkpoint" ? "checkpoint"
-                                                  : "safetensors file",
-          .content = counted(static_cast<int64_t>(file.tensors.size()), "tensor"),
+  const nn::CheckedTensors file = nn::check_safetensors(path);
+  const bool is_model = file.format == "remomask-model";
+  if (is_model) nn::has_stage(path, "");  // reads the list of its stages
+  return {.kind = is_model                               ? "model"
+                  : file.format == "remomask-checkpoint" ? "checkpoint"
+                                                         : "safetensors file",
+          .content = counted(file.tensors, "tensor"),
           .has_checksums = file.has_checksums};
 }
 
 }  // namespace
 
 CheckedFile check_core_file(const std::string& path) {
-  if (is_index(read_file(path))) return check_index(path);
+  if (is_index(path)) return check_index(path);
   return check_tensors(path);
 }
 

@@ -107,11 +107,14 @@ void register_restore(CLI::App& group, Program& program) {
 
 void register_upgrade(CLI::App& group, Program& program) {
   auto path = std::make_shared<std::string>();
+  auto accept_changes = std::make_shared<bool>(false);
   CLI::App* command = add_command(group, "upgrade", "upgrade a database to the current format",
                                   "remomask db upgrade motions.sqlite");
   command->add_option("database", *path, "database file")->required();
-  command->callback([path, &program] {
-    const db::UpgradeReport report = db::upgrade_database(*path);
+  command->add_flag("--accept-changes", *accept_changes,
+                    "take pages as they are, after another program has written to the file");
+  command->callback([path, accept_changes, &program] {
+    const db::UpgradeReport report = db::upgrade_database(*path, *accept_changes);
     if (program.json) {
       return program.print_json({{"file", *path},
                                  {"version_before", report.version_before},

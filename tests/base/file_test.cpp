@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "base/bounded_file.h"
 #include "base/hash.h"
@@ -50,6 +53,26 @@ TEST_F(FileTest, WritesAndReadsBackEveryByte) {
   write_file_atomically(path("a"), "");
   EXPECT_EQ(read_file(path("a")), "");
   EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(FileTest, APipeIsReadAndOneWithoutAWriterIsRefused) {
+  const std::string pipe = path("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::ofstream stream(pipe);
+    // Longer than a look for a writer takes.
+    std::this_thread::sleep_for(std::chrono::milliseconds(3500));
+    stream << std::string(100000, 'x') << "end";
+  });
+  EXPECT_EQ(read_file(pipe), std::string(100000, 'x') + "end");
+  writer.join();
+  try {
+    read_file(pipe);
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("pipe into which nothing writes"), std::string::npos);
+  }
 }
 
 TEST_F(FileTest, MissingFilesAndFoldersAreNamed) {

@@ -23,6 +23,14 @@ TEST(Json, IsReadDownToTheDeepestLevel) {
   EXPECT_EQ(reason_of(std::string(1000000, '{')), "it is nested deeper than 100 levels");
 }
 
+TEST(Json, ManySmallValuesDoNotFillTheMemory) {
+  std::string text = "[0";
+  for (int i = 0; i < 2100000; ++i) text += ",0";
+  EXPECT_EQ(reason_of(text + "]"), "it holds more than two million values");
+  EXPECT_TRUE(try_parse_json(text + "]").is_discarded());
+  EXPECT_EQ(parse_json(text.substr(0, 2000001) + "]").size(), 1000001u);
+}
+
 TEST(Json, BracketsInTextsAreNoLevels) {
   const std::string text = "[\"" + std::string(1000, '[') + "\\\"" + std::string(1000, '{') + "\"]";
   EXPECT_EQ(parse_json(text)[0].get<std::string>().size(), 2001u);

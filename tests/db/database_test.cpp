@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "db/clip_hash.h"
+#include "db/page_checksums.h"
 #include "db/sqlite.h"
 #include "db/transaction.h"
 #include "tests/db/db_test_tools.h"
@@ -248,7 +249,7 @@ TEST(Database, OtherProgramsAndNewerVersionsAreRefused) {
             }).find("is not a motion database"),
             std::string::npos);
   { db::Database database(folder / "new", db::OpenMode::create); }
-  run_sql(folder / "new", "PRAGMA user_version = 6");
+  run_sql(folder / "new", "PRAGMA user_version = 7");
   EXPECT_NE(error_of([&] {
               db::Database(folder / "new", db::OpenMode::read_only);
             }).find("newer version"),
@@ -308,7 +309,9 @@ TEST(Database, JournalOfAKilledWriterIsPlayedBackByReaders) {
   // A writer without WAL that is killed after half of its pages went to the file:
   // file and journal as they lie on the disk in the middle of its transaction.
   sqlite3* writer = nullptr;
-  ASSERT_EQ(sqlite3_open((folder / "d").c_str(), &writer), SQLITE_OK);
+  ASSERT_EQ(sqlite3_open_v2((folder / "d").c_str(), &writer, SQLITE_OPEN_READWRITE,
+                            db::page_checksum_vfs()),
+            SQLITE_OK);
   const auto run = [&](const char* sql) {
     ASSERT_EQ(sqlite3_exec(writer, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sql;
   };

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "db/page_checksums.h"
 #include "motion/canonical.h"
 #include "motion/vector.h"
 
@@ -46,7 +47,8 @@ db::Clip named_clip(const std::string& name) {
 
 void run_sql(const std::string& path, const char* sql) {
   sqlite3* handle = nullptr;
-  ASSERT_EQ(sqlite3_open(path.c_str(), &handle), SQLITE_OK);
+  const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  ASSERT_EQ(sqlite3_open_v2(path.c_str(), &handle, flags, db::page_checksum_vfs()), SQLITE_OK);
   EXPECT_EQ(sqlite3_exec(handle, sql, nullptr, nullptr, nullptr), SQLITE_OK)
       << sqlite3_errmsg(handle);
   sqlite3_close(handle);

@@ -30,7 +30,7 @@ std::string error_of(Function function) {
   return "";
 }
 
-/// Runs SQL behind the back of the program.
+/// Runs SQL behind the back of the program; only the checksums of pages follow.
 void run_sql(const std::string& path, const char* sql);
 
 /// All clips of a database without the fields that the order of storing gives.

@@ -163,10 +163,10 @@ TEST_F(UpgradeTest, CommandReportsAndGivesPagesBack) {
   run_sql(path_, "CREATE TABLE t (x); INSERT INTO t VALUES (zeroblob(1000000)); DROP TABLE t");
   const db::UpgradeReport first = db::upgrade_database(path_);
   EXPECT_EQ(first.version_before, 1);
-  EXPECT_EQ(first.version, 5);
+  EXPECT_EQ(first.version, 6);
   EXPECT_LT(first.bytes + 900000, first.bytes_before);
   const db::UpgradeReport second = db::upgrade_database(path_);
-  EXPECT_EQ(second.version_before, 5);
+  EXPECT_EQ(second.version_before, 6);
   const db::Database database(path_, db::OpenMode::read_only);
   EXPECT_EQ(describe_database(database), before_);
   EXPECT_EQ(database.generation(), generation_);

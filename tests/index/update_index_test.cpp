@@ -3,6 +3,8 @@
 #include <filesystem>
 
 #include "base/file.h"
+#include "base/hash.h"
+#include "index/described_file.h"
 #include "index/index_changes.h"
 #include "tests/search/living_database.h"
 
@@ -97,6 +99,21 @@ TEST_F(UpdateIndexTest, MendsDamage) {
   const std::string base = read_file(path_);
   write_file_atomically(path_, base.substr(0, base.size() / 2));
   EXPECT_NE(update().rebuilt.find("truncated"), std::string::npos);
+}
+
+TEST_F(UpdateIndexTest, RefusesChangesWhoseSizesBeginAgainAtZero) {
+  static_assert(kWidth % 2 == 0, "the bytes of the vectors shall be a multiple of 2^64");
+  update();
+  add(3);
+  update();
+  const std::string path = index::delta_path(path_);
+  nlohmann::json description =
+      index::split_described(path, read_file(path), "RMMDELTA", "").description;
+  description["added"] = uint64_t{1} << 61;
+  description["dropped"] = 0;
+  description["checksum"] = content_hash("");
+  write_file_atomically(path, index::describe(description, "RMMDELTA"));
+  EXPECT_NE(error_of([&] { opened(); }).find("the index is damaged"), std::string::npos);
 }
 
 TEST_F(UpdateIndexTest, ReplacesAnIndexOfAnotherOrigin) {

@@ -1,11 +1,14 @@
 // Loaded before libc into the program under test: counts the calls that change files, and lets
 // one of them fail. REMOMASK_CALL=N chooses the N-th call, REMOMASK_FAULT what happens there:
 // "kill" (SIGKILL with half of a write done) or "full" (this and all later writes find the disk
-// full). REMOMASK_CALLS names a file for the number of calls.
+// full). REMOMASK_CALLS names a file for the number of calls. REMOMASK_CLOCK_STEP=SECONDS lets the
+// clock go on by so much at every look at it.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -97,6 +100,62 @@ ssize_t pwrite(int descriptor, const void* data, size_t size, off_t offset) {
 
 ssize_t pwrite64(int descriptor, const void* data, size_t size, off_t offset) {
   return checked_pwrite("pwrite64", descriptor, data, size, offset);
+}
+
+ssize_t writev(int descriptor, const iovec* pieces, int count) {
+  using Call = ssize_t(int, const iovec*, int);
+  static Call* const call = original<Call>("writev");
+  if (is_file(descriptor) && meets_fault(true, [&] { call(descriptor, pieces, count / 2); })) {
+    errno = ENOSPC;
+    return -1;
+  }
+  return call(descriptor, pieces, count);
+}
+
+int ftruncate(int descriptor, off_t size) {
+  using Call = int(int, off_t);
+  static Call* const call = original<Call>("ftruncate");
+  meets_fault(false, nothing);
+  return call(descriptor, size);
+}
+
+int ftruncate64(int descriptor, off64_t size) {
+  using Call = int(int, off64_t);
+  static Call* const call = original<Call>("ftruncate64");
+  meets_fault(false, nothing);
+  return call(descriptor, size);
+}
+
+int mkdir(const char* path, mode_t mode) {
+  using Call = int(const char*, mode_t);
+  static Call* const call = original<Call>("mkdir");
+  meets_fault(false, nothing);
+  return call(path, mode);
+}
+
+int unlinkat(int folder, const char* path, int flags) {
+  using Call = int(int, const char*, int);
+  static Call* const call = original<Call>("unlinkat");
+  meets_fault(false, nothing);
+  return call(folder, path, flags);
+}
+
+int remove(const char* path) {
+  using Call = int(const char*);
+  static Call* const call = original<Call>("remove");
+  meets_fault(false, nothing);
+  return call(path);
+}
+
+int clock_gettime(clockid_t clock, timespec* time) {
+  using Call = int(clockid_t, timespec*);
+  static Call* const call = original<Call>("clock_gettime");
+  static const char* text = std::getenv("REMOMASK_CLOCK_STEP");
+  static const long step = text != nullptr ? std::atol(text) : 0;
+  static std::atomic<long> looks{0};
+  const int result = call(clock, time);
+  if (step > 0 && clock == CLOCK_MONOTONIC) time->tv_sec += step * ++looks;
+  return result;
 }
 
 int fsync(int descriptor) {

@@ -1,138 +1,77 @@
-// Kills every command that writes at its calls of write, fsync, rename and unlink, and lets the
-// disk be full from a write on. Afterwards the database is in order, the same command run again
-// gives what an undisturbed run gives, and nothing is left over.
-//   REMOMASK_TORTURE_POINTS=N   faults a command and kind; 0: at every call. Default 3.
+// Kills every command that writes at its calls that change files, and lets the disk be full from a
+// write on. Afterwards the files are in order, the same command run again gives what an undisturbed
+// run gives, and nothing is left over.
+//   REMOMASK_TORTURE_POINTS=N   faults a command and kind; 0: at every call. Default 2, and 1 of
+//                               commands that generate or train.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <functional>
-#include <map>
-#include <set>
+#include <filesystem>
+#include <iostream>
 
 #include "base/file.h"
-#include "base/hash.h"
 #include "tests/tools/program_runner.h"
+#include "tests/torture/folder_state.h"
+#include "tests/torture/scenarios.h"
+#include "tests/torture/shared_folder.h"
 
 namespace remomask {
 namespace {
 
 namespace fs = std::filesystem;
 
-using Words = std::vector<std::string>;
-
-/// A command that writes, and the files that it starts from. In its words, "@" stands for the
-/// folder that it works in.
-struct Scenario {
-  const char* name;
-  std::vector<Words> before;
-  Words command;
-  std::vector<std::string> databases;  ///< to be checked
-};
-
-const std::vector<Scenario>& scenarios() {
-  static const Words few = {"procedural", "--db", "@/d.sqlite", "--count", "6"};
-  static const Words index = {"index", "@/d.sqlite"};
-  static const Words snapshot = {"db", "snapshot", "@/d.sqlite", "@/s.sqlite"};
-  static const Words motion = {"convert", "@/a.npy", "@/b.bvh"};
-  static const Words files = {"db", "export", "@/d.sqlite", "@/files"};
-  static const std::vector<Scenario> all = {
-      {"import", {few, files}, {"import", "@/files", "--db", "@/new.sqlite"}, {"new.sqlite"}},
-      {"index", {few}, index, {"d.sqlite"}},
-      {"add",
-       {few, files},
-       {"db", "add", "@/e.sqlite", "@/first.npy", "--caption", "a person"},
-       {"e.sqlite"}},
-      {"tag", {few}, {"db", "tag", "@/d.sqlite", "#1", "#2", "#4", "--add", "good"}, {"d.sqlite"}},
-      {"remove", {few}, {"db", "remove", "@/d.sqlite", "#2", "#3", "--yes"}, {"d.sqlite"}},
-      {"merge",
-       {few, {"procedural", "--db", "@/e.sqlite", "--count", "3"}},
-       {"db", "merge", "@/e.sqlite", "@/d.sqlite"},
-       {"e.sqlite"}},
-      {"snapshot",
-       {few, snapshot},
-       {"db", "snapshot", "@/d.sqlite", "@/s.sqlite", "--force"},
-       {"s.sqlite"}},
-      {"restore",
-       {few, snapshot},
-       {"db", "restore", "@/s.sqlite", "@/r.sqlite", "--force"},
-       {"r.sqlite"}},
-      {"export", {few}, {"db", "export", "@/d.sqlite", "@/files", "--resume"}, {}},
-      {"convert", {few, files}, {"convert", "@/first.npy", "@/b.bvh"}, {}},
-  };
-  return all;
-}
-
-Words in_folder(const Words& words, const std::string& folder) {
-  Words result;
-  for (const std::string& word : words) {
-    result.push_back(word.starts_with("@") ? folder + word.substr(1) : word);
-  }
-  result.push_back("--quiet");
-  return result;
-}
-
-/// Everything that the program says of a database, or the hash of a file.
-std::string state_of(const std::string& folder) {
-  std::set<std::string> lines;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    const std::string path = entry.path().string();
-    const std::string name = fs::relative(path, folder).string();
-    if (name.ends_with(".sqlite")) {
-      nlohmann::json clips = run_json({"db", "list", path});
-      lines.insert(name + ": " + clips.dump());
-    } else if (name.find(".sqlite") == std::string::npos) {
-      lines.insert(name + ": " + content_hash(read_file(path)));
-    }
-  }
-  std::string state;
-  for (const std::string& line : lines) state += line + "\n";
-  return state;
-}
-
-/// Files of a killed process: none may be there after the next run.
-std::string leftovers_in(const std::string& folder) {
-  std::string found;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.find(".tmp-") != std::string::npos || name.ends_with("-journal")) found += name + " ";
-  }
-  return found;
-}
-
 class Torture : public testing::TestWithParam<Scenario> {
  protected:
+  static void TearDownTestSuite() {
+    std::cout << "torture: " << kills_ << " kills and " << full_disks_ << " full disks\n";
+  }
+
   void SetUp() override {
+    if (GetParam().generates) SharedFolder::instance().need_model();
     prepare(start_ / "work");
     fs::copy(start_ / "work", reference_ / "work", fs::copy_options::recursive);
     const std::string count = start_ / "calls";
-    const ProgramResult run =
-        run_program(in_folder(GetParam().command, reference_ / "work"),
-                    {{"LD_PRELOAD", REMOMASK_INTERPOSE}, {"REMOMASK_CALLS", count}});
+    auto environment = interposed();
+    environment["REMOMASK_CALLS"] = count;
+    const ProgramResult run = run_program(command_in(reference_ / "work"), environment);
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     calls_ = std::stol(read_file(count));
     ASSERT_GT(calls_, 0);
     expected_ = state_of(reference_ / "work");
+    ASSERT_EQ(damage_in(reference_ / "work"), "");
+  }
+
+  static Words command_in(const std::string& folder) {
+    Words command = in_folders(GetParam().command, folder, SharedFolder::instance().path());
+    command.push_back("--quiet");
+    return command;
+  }
+
+  static std::map<std::string, std::string> interposed() {
+    std::map<std::string, std::string> environment = {{"LD_PRELOAD", REMOMASK_INTERPOSE}};
+    if (GetParam().clock_step > 0) {
+      environment["REMOMASK_CLOCK_STEP"] = std::to_string(GetParam().clock_step);
+    }
+    return environment;
   }
 
   static void prepare(const std::string& folder) {
     fs::create_directories(folder);
     for (const Words& words : GetParam().before) {
-      const ProgramResult run = run_program(in_folder(words, folder));
+      Words command = in_folders(words, folder, SharedFolder::instance().path());
+      if (command.front() == "cp") {
+        write_file_atomically(command[2], read_file(command[1]));
+        continue;
+      }
+      command.push_back("--quiet");
+      const ProgramResult run = run_program(command);
       ASSERT_EQ(run.exit_code, 0) << run.errors;
     }
-    if (!fs::exists(folder + "/files")) return;
-    std::vector<std::string> motions;
-    for (const auto& entry : fs::directory_iterator(folder + "/files")) {
-      if (entry.path().extension() == ".npy") motions.push_back(entry.path().string());
-    }
-    fs::copy_file(*std::min_element(motions.begin(), motions.end()), folder + "/first.npy");
   }
 
   /// Calls to fail at, spread over the run.
   std::vector<long> points() const {
     const char* text = std::getenv("REMOMASK_TORTURE_POINTS");
-    long count = text != nullptr ? std::atol(text) : 3;
+    long count = text != nullptr ? std::atol(text) : GetParam().generates ? 1 : 2;
     if (count == 0 || count > calls_) count = calls_;
     std::vector<long> result;
     for (long i = 0; i < count; ++i) result.push_back(1 + (2 * i + 1) * calls_ / (2 * count));
@@ -144,34 +83,24 @@ class Torture : public testing::TestWithParam<Scenario> {
     const TestFolder scratch;
     const std::string folder = scratch / "work";
     fs::copy(start_ / "work", folder, fs::copy_options::recursive);
-    const Words command = in_folder(GetParam().command, folder);
-    const ProgramResult broken = run_program(command, {{"LD_PRELOAD", REMOMASK_INTERPOSE},
-                                                       {"REMOMASK_FAULT", fault},
-                                                       {"REMOMASK_CALL", std::to_string(call)}});
+    auto environment = interposed();
+    environment["REMOMASK_FAULT"] = fault;
+    environment["REMOMASK_CALL"] = std::to_string(call);
+    const ProgramResult broken = run_program(command_in(folder), environment);
     if (fault == "full") {
       // What was written before the disk was full can be all that there was to write.
       EXPECT_TRUE(broken.exit_code == 1 || broken.exit_code == 0) << broken.exit_code;
-      EXPECT_EQ(leftovers_in(folder), "");
+      EXPECT_EQ(leftovers_in(folder), "") << broken.errors;
+      ++full_disks_;
     } else {
       EXPECT_TRUE(broken.exit_code == 137 || broken.exit_code == 0) << broken.exit_code;
+      kills_ += broken.exit_code == 137 ? 1 : 0;
     }
-    for (const std::string& name : GetParam().databases) {
-      const std::string path = folder + "/" + name;
-      // A new database whose first transaction was never finished is an empty file.
-      if (!fs::exists(path) || fs::file_size(path) == 0) continue;
-      if (is_unmade(path)) continue;
-      const ProgramResult check = run_program({"db", "check", path});
-      EXPECT_EQ(check.exit_code, 0) << check.output << check.errors;
-    }
-    const ProgramResult again = run_program(command);
+    EXPECT_EQ(damage_in(folder), "");
+    const ProgramResult again = run_program(command_in(folder));
     ASSERT_TRUE(again.exit_code == 0 || is_done_already(again)) << again.errors;
     EXPECT_EQ(state_of(folder), expected_);
     EXPECT_EQ(leftovers_in(folder), "");
-  }
-
-  /// True for a file in which no table was made yet.
-  static bool is_unmade(const std::string& path) {
-    return run_program({"db", "check", path}).errors.find("it is empty") != std::string::npos;
   }
 
   /// The command was killed after its work: some say the second time that it is done.
@@ -181,6 +110,7 @@ class Torture : public testing::TestWithParam<Scenario> {
            run.errors.find("already") != std::string::npos;
   }
 
+  static inline int kills_ = 0, full_disks_ = 0;
   TestFolder start_, reference_;
   long calls_ = 0;
   std::string expected_;
