@@ -50,19 +50,19 @@ TEST(OldFormats, Version2IsReadAsItIs) {
 }
 
 TEST(OldFormats, AllAreUpgradedWhenTheyAreWritten) {
-  for (const int version : {1, 2, 3, 4}) {
+  for (const int version : {1, 2, 3, 4, 5}) {
     const TestFolder folder;
     const std::string path = old_database(folder, version);
     expect_content(db::Database(path, db::OpenMode::read_write));
     EXPECT_TRUE(db::check_database(path).defects.empty());
-    EXPECT_EQ(db::upgrade_database(path).version_before, 5);
+    EXPECT_EQ(db::upgrade_database(path).version_before, 6);
   }
 }
 
 TEST(OldFormats, ANewerVersionIsRefused) {
   const TestFolder folder;
   const std::string path = old_database(folder, 2);
-  run_sql(path, "PRAGMA user_version = 6");
+  run_sql(path, "PRAGMA user_version = 7");
   for (const auto mode : {db::OpenMode::read_only, db::OpenMode::read_write}) {
     EXPECT_NE(error_of([&] { db::Database(path, mode); }).find("newer version of remomask"),
               std::string::npos);
