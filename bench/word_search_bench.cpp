@@ -122,6 +122,7 @@ class Gallery {
       db::Clip clip = model;
       clip.name = "clip" + std::to_string(i);
       clip.group = clip.name;
+      clip.content_hash.clear();  // of the motion below
       clip.captions.clear();
       for (size_t c = 0; c < 3 && !model.captions.empty(); ++c) {
         const std::string& caption = model.captions[c % model.captions.size()];

@@ -36,10 +36,6 @@ constexpr int kMinQueryFrames = kFramesPerToken;  // as clips that are embedded
 constexpr int64_t kCaptionClips = 50;             // whose captions are compared one by one
 constexpr size_t kMomentHits = 50;                // whose windows are embedded
 
-Error no_word(const std::string& text) {
-  return Error("'" + text + "' holds no word; write letters or digits");
-}
-
 }  // namespace
 
 MotionSearch::Impl::Impl(std::shared_ptr<const retriever::Retriever> shared,

@@ -76,6 +76,7 @@ WordedQuery MotionSearch::Impl::worded_query(const SearchQuery& query, const Sen
   WordedQuery worded;
   worded.sentence = spelled(sentence.text, index, worded.language);
   const std::string text = text::normalise_prompt(worded.sentence.text);
+  if (index.stems().read(text).empty()) throw no_word(sentence.text);
   worded.variants.emplace_back().text = text;
   const std::string mirrored = text::mirror_caption(text);
   if (mirrored != text && query.mirror) {

@@ -14,11 +14,13 @@ void register_train(CLI::App& app, Program& program) {
       add_command(app, "train", "train one network or all; the same command resumes",
                   "remomask train all --db motions.sqlite --preset base -o run");
   command
-      ->add_option("stage", options->stage,
-                   "text, retriever, tokenizer, masked, residual, all (of these), evaluator")
+      ->add_option(
+          "stage", options->stage,
+          "text, retriever, tokenizer, masked, residual, all (of these), evaluator, words (an "
+          "adapter of the sentence encoder)")
       ->required()
       ->check(CLI::IsMember(
-          {"text", "retriever", "tokenizer", "masked", "residual", "all", "evaluator"}));
+          {"text", "retriever", "tokenizer", "masked", "residual", "all", "evaluator", "words"}));
   command->add_option("--db", options->database, "database with splits train and val")->required();
   command->add_option("-o,--output", options->folder, "folder of the stage files")->required();
   command->add_option("--preset", options->preset, "sizes of all networks")
@@ -29,6 +31,10 @@ void register_train(CLI::App& app, Program& program) {
                    "leave something out, for comparisons: full, momask, no-retrieval, no-ssta, ... "
                    "(docs/training.md lists them), levels-N, quantizer-dropout-PERCENT")
       ->capture_default_str();
+  command
+      ->add_option("--text", options->text_file,
+                   "words: text file of the sentence encoder; default: the shipped one")
+      ->check(CLI::ExistingFile);
   command->add_option("--source", options->sources, "only these data sets (repeatable)");
   command->add_option("--captions", options->captions,
                       "more captions for the text encoder: JSON Lines with \"captions\"");

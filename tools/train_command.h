@@ -13,11 +13,15 @@ namespace remomask::tools {
 struct TrainCommand {
   std::string stage, database, folder, preset = "base", variant = "full", queues = "both";
   std::vector<std::string> captions, sources;
+  std::string text_file;  ///< of the sentence encoder; empty: the shipped one
   std::optional<int64_t> steps, batch, queue_size;
   std::optional<double> learning_rate, same_label_weight;
   uint64_t seed = 1;
 };
 
 void run_train(const TrainCommand& command, Program& program);
+
+/// The stage "words": an adapter of the sentence encoder, which is no part of a model.
+void run_train_words(const TrainCommand& command, Program& program);
 
 }  // namespace remomask::tools
