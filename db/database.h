@@ -55,6 +55,13 @@ struct CaptionVector {
   std::vector<float> vector;  ///< L2-normalised
 };
 
+/// A caption that nobody wrote: the program took it from clips that move alike.
+struct GuessedCaption {
+  int64_t clip_id = 0;
+  std::string text;
+  double probability = 0;  ///< that it says what the clip shows
+};
+
 enum class OpenMode { read_only, read_write, create };
 
 /// The motion database: one SQLite file (WAL), the truth of everything that is
@@ -167,6 +174,17 @@ class Database {
   std::vector<CaptionVector> caption_vectors(const std::string& encoder_hash) const;
   /// Encoders of which vectors are stored.
   std::vector<std::string> caption_encoders() const;
+
+  // Guessed captions. They are kept apart from those of people: Clip::captions, the full-text
+  // index, training sets and exports do not know them.
+
+  /// By clip, the most probable first.
+  std::vector<GuessedCaption> guessed_captions() const;
+  /// Stores further ones, those of one clip in falling order. Throws Error, and stores nothing, for
+  /// a clip that has a caption of people.
+  void store_guesses(const std::vector<GuessedCaption>& guesses);
+  /// Returns how many of these clips had some. A caption of people removes those of its clip, too.
+  int64_t remove_guesses(const std::vector<int64_t>& clip_ids);
 
   // Facts.
 

@@ -8,13 +8,13 @@
 namespace remomask::db {
 
 std::vector<std::string> Database::captions_without_vector(const std::string& encoder_hash) const {
-  const bool none = !impl_->has_caption_vectors();
+  const bool some = impl_->has_caption_vectors();
+  std::string sql = "SELECT text FROM caption";
+  if (impl_->has_guessed_captions()) sql += " UNION SELECT text FROM guessed_caption";
+  if (some) sql += " EXCEPT SELECT text FROM caption_vector WHERE encoder_hash = ?";
   SqliteStatement rows(impl_->connection,
-                       none ? "SELECT DISTINCT text FROM caption ORDER BY text"
-                            : "SELECT DISTINCT text FROM caption WHERE NOT EXISTS (SELECT 1 FROM "
-                              "caption_vector WHERE encoder_hash = ? AND caption_vector.text = "
-                              "caption.text) ORDER BY text");
-  if (!none) rows.bind(1, encoder_hash);
+                       ("SELECT DISTINCT text FROM (" + sql + ") ORDER BY text").c_str());
+  if (some) rows.bind(1, encoder_hash);
   std::vector<std::string> texts;
   while (rows.step()) texts.push_back(rows.text(0));
   return texts;
@@ -42,7 +42,7 @@ int64_t Database::drop_unused_caption_vectors(const std::string& encoder_hash) {
   SqliteScope scope(impl_->connection);
   SqliteStatement(impl_->connection,
                   "DELETE FROM caption_vector WHERE encoder_hash <> ? OR text NOT IN "
-                  "(SELECT text FROM caption)")
+                  "(SELECT text FROM caption UNION SELECT text FROM guessed_caption)")
       .bind(1, encoder_hash)
       .run();
   const int64_t dropped = impl_->connection.integer("SELECT changes()");

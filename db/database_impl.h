@@ -65,6 +65,10 @@ struct Database::Impl {
     return connection.integer("PRAGMA user_version") >= kCaptionVectorVersion;
   }
 
+  bool has_guessed_captions() const {
+    return connection.integer("PRAGMA user_version") >= kGuessedCaptionVersion;
+  }
+
   std::optional<std::string> fact(const std::string& key) const {
     SqliteStatement statement(connection, "SELECT value FROM fact WHERE key = ?");
     statement.bind(1, key);

@@ -7,7 +7,7 @@
 
 namespace remomask::db {
 
-/// Since format 6 every page of a database ends with a checksum of it, where SQLite leaves room if
+/// Since format 7 every page of a database ends with a checksum of it, where SQLite leaves room if
 /// it is asked to ("reserved bytes"). A layer between SQLite and the file system writes and
 /// compares it, so that no byte of the file, of whatever table, index or list, can change without
 /// being noticed when it is read. Other programs read such a file as any other; pages that they

@@ -159,7 +159,23 @@ CREATE TABLE caption_vector (
 );
 )sql";
 
-constexpr const char* kVersions[] = {kVersion1, kVersion2, kVersion3, kVersion4, kVersion5};
+// What people say of a clip takes the place of what was guessed.
+constexpr const char* kVersion6 = R"sql(
+CREATE TABLE guessed_caption (
+  clip_id INTEGER NOT NULL REFERENCES clip (id) ON DELETE CASCADE,
+  position INTEGER NOT NULL,
+  text TEXT NOT NULL,
+  probability REAL NOT NULL,
+  PRIMARY KEY (clip_id, position)
+) WITHOUT ROWID;
+
+CREATE TRIGGER caption_replaces_guess AFTER INSERT ON caption BEGIN
+  DELETE FROM guessed_caption WHERE clip_id = new.clip_id;
+END;
+)sql";
+
+constexpr const char* kVersions[] = {kVersion1, kVersion2, kVersion3,
+                                     kVersion4, kVersion5, kVersion6};
 static_assert(std::size(kVersions) == kUnsealedVersion);
 
 void set_version(const SqliteConnection& connection, int64_t version) {
@@ -230,6 +246,11 @@ void upgrade_from_3(const SqliteConnection& connection) {
 void upgrade_from_4(const SqliteConnection& connection) {
   connection.execute(kVersion5);
   set_version(connection, 5);
+}
+
+void upgrade_from_5(const SqliteConnection& connection) {
+  connection.execute(kVersion6);
+  set_version(connection, 6);
 }
 
 using SchemaObjects = std::map<std::pair<std::string, std::string>, std::string>;
@@ -358,6 +379,7 @@ void upgrade_schema(const SqliteConnection& connection) {
   if (connection.integer("PRAGMA user_version") == 2) upgrade_from_2(connection);
   if (connection.integer("PRAGMA user_version") == 3) upgrade_from_3(connection);
   if (connection.integer("PRAGMA user_version") == 4) upgrade_from_4(connection);
+  if (connection.integer("PRAGMA user_version") == 5) upgrade_from_5(connection);
   scope.commit();
 }
 

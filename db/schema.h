@@ -6,10 +6,10 @@ namespace remomask::db {
 
 /// Marks a SQLite file as a motion database ("RMMK").
 constexpr int64_t kApplicationId = 0x524d4d4b;
-constexpr int64_t kSchemaVersion = 6;
+constexpr int64_t kSchemaVersion = 7;
 /// To which every writer brings an older file. The step from there, checksums of pages, writes the
 /// whole file anew.
-constexpr int64_t kUnsealedVersion = 5;
+constexpr int64_t kUnsealedVersion = 6;
 /// Files from this version on can be read without an upgrade.
 constexpr int64_t kOldestReadableVersion = 2;
 /// Of the version that keeps a log of the changed vectors and of who wrote.
@@ -18,8 +18,10 @@ constexpr int64_t kLoggingVersion = 3;
 constexpr int64_t kChecksumVersion = 4;
 /// Of the version that keeps vectors of captions.
 constexpr int64_t kCaptionVectorVersion = 5;
+/// Of the version that keeps guessed captions.
+constexpr int64_t kGuessedCaptionVersion = 6;
 /// Of the version whose pages have checksums.
-constexpr int64_t kPageChecksumVersion = 6;
+constexpr int64_t kPageChecksumVersion = 7;
 
 /// Makes the tables in an empty file.
 void create_schema(const SqliteConnection& connection);

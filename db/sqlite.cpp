@@ -204,6 +204,11 @@ SqliteStatement& SqliteStatement::bind_real(int parameter, double value) {
   return *this;
 }
 
+SqliteStatement& SqliteStatement::bind_pointer(int parameter, void* pointer, const char* type) {
+  check(sqlite3_bind_pointer(statement_, parameter, pointer, type, nullptr));
+  return *this;
+}
+
 bool SqliteStatement::step() {
   const int code = sqlite3_step(statement_);
   if (code == SQLITE_ROW) return true;

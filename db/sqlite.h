@@ -65,6 +65,8 @@ class SqliteStatement {
   SqliteStatement& bind(int parameter, std::span<const float> values);
   /// A name of its own: an int would fit bind(double) as well as bind(int64_t).
   SqliteStatement& bind_real(int parameter, double value);
+  /// A pointer of this type for a function that takes such.
+  SqliteStatement& bind_pointer(int parameter, void* pointer, const char* type);
   /// True when there is a row.
   bool step();
   /// For statements without rows; the statement can be bound and run again.

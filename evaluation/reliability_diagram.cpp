@@ -105,7 +105,8 @@ void write_reliability_diagram(const std::string& png_path, const ReliabilityPic
       std::minmax_element(picture.similarities.begin(), picture.similarities.end());
   const bool spread = low != picture.similarities.end() && *low < *high;
   const Panel table{cairo, kLeft, spread ? *low : -1, spread ? *high : 1};
-  table.draw("Share right at a similarity", "similarity of the hit (bars: how often it occurs)");
+  table.draw("Share right at a " + picture.scored,
+             picture.scored + " of the hit (bars: how often it occurs)");
   draw_histogram(table, picture.similarities);
   draw_calibration(table, picture.calibration);
   const Panel reliability{cairo, kLeft + kPanel + kBetween, 0, 1};

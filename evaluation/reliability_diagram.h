@@ -10,14 +10,15 @@ namespace remomask::evaluation {
 /// What a reliability diagram shows.
 struct ReliabilityPicture {
   std::string heading;                       ///< for example the splits
+  std::string scored = "similarity";         ///< what the table is over
   std::string note;                          ///< below it, for example pairs and error
-  search::Calibration calibration;           ///< drawn over the similarity
+  search::Calibration calibration;           ///< drawn over the similarities
   std::vector<search::ReliabilityBin> bins;  ///< drawn over the predicted share
   std::vector<double> similarities;          ///< of the checked pairs, drawn as a histogram
 };
 
-/// Two panels side by side as PNG: the calibration table over the similarity
-/// with how often each similarity occurs, and the share that is right against
+/// Two panels side by side as PNG: the calibration table over the similarity, or another score,
+/// with how often each occurs, and the share that is right against
 /// the predicted share with the diagonal that a perfect calibration has; the
 /// area of a point is its number of pairs. Written atomically.
 void write_reliability_diagram(const std::string& png_path, const ReliabilityPicture& picture);

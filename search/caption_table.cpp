@@ -1,69 +1,60 @@
 #include "search/caption_table.h"
 
-#include <ATen/ops/from_blob.h>
-#include <ATen/ops/mv.h>
-
 #include <algorithm>
 #include <numeric>
+#include <string_view>
 #include <unordered_map>
 
-#include "nn/tensor_values.h"
 #include "remomask/error.h"
+#include "text/caption.h"
+#include "text/words.h"
 
 namespace remomask::search {
 
-CaptionTable::CaptionTable(const std::vector<db::Clip>& clips,
+CaptionTable::CaptionTable(size_t clips,
+                           const std::function<std::vector<std::string>(size_t)>& texts_of,
                            const std::vector<db::CaptionVector>& vectors) {
-  std::unordered_map<std::string, int32_t> places;
-  for (const db::CaptionVector& one : vectors) {
-    width_ = static_cast<int64_t>(one.vector.size());
-    places.emplace(one.text, static_cast<int32_t>(texts_.size()));
-    texts_.push_back(one.text);
-    vectors_.insert(vectors_.end(), one.vector.begin(), one.vector.end());
-  }
-  for (const db::Clip& clip : clips) {
-    first_.push_back(static_cast<int64_t>(rows_.size()));
+  std::unordered_map<std::string_view, const db::CaptionVector*> known;
+  for (const db::CaptionVector& one : vectors) known.emplace(one.text, &one);
+  if (!vectors.empty()) width_ = static_cast<int64_t>(vectors.front().vector.size());
+  vectors_.reserve(vectors.size() * static_cast<size_t>(width_));
+  // In the order of the clips, so that the captions of one lie together.
+  std::unordered_map<std::string_view, int32_t> places;
+  for (size_t clip = 0; clip < clips; ++clip) {
+    first_.push_back(rows_.size());
     bool complete = true;
-    for (const std::string& caption : clip.captions) {
-      const auto place = places.find(caption);
-      complete = complete && place != places.end();
-      if (place != places.end()) rows_.push_back(place->second);
+    for (const std::string& text : texts_of(clip)) {
+      const auto vector = known.find(text);
+      complete = complete && vector != known.end();
+      if (vector == known.end()) continue;
+      const auto [place, is_new] =
+          places.emplace(vector->first, static_cast<int32_t>(texts_.size()));
+      rows_.push_back(place->second);
+      if (!is_new) continue;
+      texts_.push_back(text);
+      sides_.push_back(static_cast<uint8_t>(named_sides(text)));
+      const std::vector<float>& numbers = vector->second->vector;
+      vectors_.insert(vectors_.end(), numbers.begin(), numbers.end());
     }
     if (!complete) ++incomplete_clips_;
   }
-  first_.push_back(static_cast<int64_t>(rows_.size()));
+  first_.push_back(rows_.size());
+  rough_ = QuantizedRows(vectors_, width_);
 }
 
-std::vector<float> CaptionTable::cosines(const std::vector<float>& query) const {
+std::vector<float> CaptionTable::rough_cosines(const std::vector<float>& query) const {
   if (texts_.empty()) return {};
   if (static_cast<int64_t>(query.size()) != width_) {
     throw Error("the vector of the sentence has another width than those of the captions");
   }
-  // from_blob() wants pointers that could write; nothing is written.
-  const at::Tensor table = at::from_blob(const_cast<float*>(vectors_.data()),
-                                         {static_cast<int64_t>(texts_.size()), width_});
-  const at::Tensor vector = at::from_blob(const_cast<float*>(query.data()), {width_});
-  return nn::float_vector(at::mv(table, vector));
+  return rough_.products(query);
 }
 
-std::vector<CaptionMatch> CaptionTable::clip_matches(const std::vector<float>& cosines) const {
-  std::vector<CaptionMatch> matches(first_.size() - 1);
-  for (size_t clip = 0; clip < matches.size(); ++clip) {
-    CaptionMatch& match = matches[clip];
-    const auto first = static_cast<size_t>(first_[clip]);
-    const auto last = static_cast<size_t>(first_[clip + 1]);
-    if (first == last) continue;
-    double sum = 0;
-    for (size_t i = first; i < last; ++i) {
-      const float cosine = cosines[static_cast<size_t>(rows_[i])];
-      sum += cosine;
-      if (match.caption >= 0 && cosine <= match.best) continue;
-      match.best = cosine;
-      match.caption = rows_[i];
-    }
-    match.mean = static_cast<float>(sum / static_cast<double>(last - first));
-  }
-  return matches;
+CaptionMatch CaptionTable::exact_match(size_t clip, const std::vector<float>& query) const {
+  return match(clip, [&](int32_t row) {
+    const float* const vector = vectors_.data() + row * width_;
+    return static_cast<float>(std::inner_product(query.begin(), query.end(), vector, 0.0));
+  });
 }
 
 std::vector<int32_t> CaptionTable::nearest(const std::vector<float>& cosines, size_t count) const {
@@ -77,6 +68,26 @@ std::vector<int32_t> CaptionTable::nearest(const std::vector<float>& cosines, si
   std::partial_sort(order.begin(), end, order.end(), better);
   order.erase(end, order.end());
   return order;
+}
+
+bool CaptionTable::names_side(size_t clip) const {
+  return std::any_of(rows_.begin() + static_cast<std::ptrdiff_t>(first_[clip]),
+                     rows_.begin() + static_cast<std::ptrdiff_t>(first_[clip + 1]),
+                     [&](int32_t row) { return sides(row) != 0; });
+}
+
+unsigned named_sides(const std::string& text) {
+  unsigned sides = 0;
+  for (const std::string& word : text::split_words(text::normalise_caption(text))) {
+    // A word that the mirror exchanges names a side; "left", the past of "leave", does not.
+    if (word.starts_with("left") || word.starts_with("counterclock") ||
+        word.starts_with("anticlock")) {
+      sides |= 1u;
+    } else if (word.starts_with("right") || word.starts_with("clockwise")) {
+      sides |= 2u;
+    }
+  }
+  return sides;
 }
 
 }  // namespace remomask::search

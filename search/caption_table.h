@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "db/database.h"
+#include "search/quantized_rows.h"
 
 namespace remomask::search {
 
@@ -14,31 +16,67 @@ struct CaptionMatch {
   int32_t caption = -1;  ///< of the table: the nearest; -1: the clip has none
 };
 
-/// The captions of all clips with their vectors, each text once. Compares a sentence with every
-/// one of them: the cost is one product of a matrix [texts][width] and a vector.
+/// The captions of all clips with their vectors, each text once. Compares a sentence with every one
+/// of them, first roughly: that takes as long as reading a byte for each number of the vectors.
+/// Those of the clips that can matter are compared again with all digits.
 class CaptionTable {
  public:
-  /// `clips` as Database::clips() gives them; captions without a vector are left out.
-  CaptionTable(const std::vector<db::Clip>& clips, const std::vector<db::CaptionVector>& vectors);
+  /// `texts_of(place)` gives the captions of each of the clips; those without a vector are left
+  /// out.
+  CaptionTable(size_t clips, const std::function<std::vector<std::string>(size_t)>& texts_of,
+               const std::vector<db::CaptionVector>& vectors);
 
-  /// Cosines of a vector [width] and every caption. Throws Error for another width.
-  std::vector<float> cosines(const std::vector<float>& query) const;
-  /// What these mean for each clip, in the order of `clips`.
-  std::vector<CaptionMatch> clip_matches(const std::vector<float>& cosines) const;
-  /// The captions with the highest cosines, best first.
+  /// Cosines of a vector [width] and every caption to within 0.003. Throws Error for another width.
+  std::vector<float> rough_cosines(const std::vector<float>& query) const;
+  /// What these mean for a clip.
+  CaptionMatch rough_match(size_t clip, const std::vector<float>& rough) const {
+    return match(clip, [&](int32_t row) { return rough[static_cast<size_t>(row)]; });
+  }
+  /// The same from the cosines themselves.
+  CaptionMatch exact_match(size_t clip, const std::vector<float>& query) const;
+  /// The captions with the highest of these cosines, best first.
   std::vector<int32_t> nearest(const std::vector<float>& cosines, size_t count) const;
 
   const std::string& text(int32_t caption) const { return texts_[static_cast<size_t>(caption)]; }
+  /// named_sides() of a caption.
+  unsigned sides(int32_t caption) const { return sides_[static_cast<size_t>(caption)]; }
+  bool has_captions(size_t clip) const { return first_[clip] != first_[clip + 1]; }
+  /// Whether a caption of the clip names a side.
+  bool names_side(size_t clip) const;
   size_t size() const { return texts_.size(); }
   /// Clips with a caption that has no vector.
   int64_t incomplete_clips() const { return incomplete_clips_; }
 
  private:
+  template <typename CosineOf>
+  CaptionMatch match(size_t clip, CosineOf cosine_of) const;
+
   std::vector<std::string> texts_;
+  std::vector<uint8_t> sides_;
   std::vector<float> vectors_;  // [texts][width]
+  QuantizedRows rough_;         // of the same
   int64_t width_ = 0, incomplete_clips_ = 0;
-  std::vector<int64_t> first_;  // of each clip in rows_, and the end
-  std::vector<int32_t> rows_;   // captions of the clips
+  std::vector<size_t> first_;  // of each clip in rows_, and the end
+  std::vector<int32_t> rows_;  // captions of the clips
 };
+
+template <typename CosineOf>
+CaptionMatch CaptionTable::match(size_t clip, CosineOf cosine_of) const {
+  CaptionMatch match;
+  const size_t first = first_[clip], last = first_[clip + 1];
+  double sum = 0;
+  for (size_t i = first; i < last; ++i) {
+    const float cosine = cosine_of(rows_[i]);
+    sum += cosine;
+    if (match.caption >= 0 && cosine <= match.best) continue;
+    match.best = cosine;
+    match.caption = rows_[i];
+  }
+  if (first != last) match.mean = static_cast<float>(sum / static_cast<double>(last - first));
+  return match;
+}
+
+/// Sides that a text names: bit 0 left, bit 1 right.
+unsigned named_sides(const std::string& text);
 
 }  // namespace remomask::search

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <unordered_set>
 
+#include "search/word_index.h"
+
 namespace remomask::search {
 
 namespace {
@@ -55,21 +57,22 @@ bool is_function_word(const std::string& word) {
 std::vector<QueryWord> covered_words(const encoders::SentenceEncoder& encoder,
                                      const CoverageQuestion& question) {
   std::vector<QueryWord> result;
-  std::vector<std::vector<encoders::WordState>> captions;
-  for (const encoders::WordState& word : encoder.words(question.sentence)) {
-    if (is_function_word(word.normal)) continue;
-    QueryWord one;
-    one.word = word.typed;
-    one.in_captions = question.in_captions(word.normal);
-    if (one.in_captions) {
-      one.covered = 1;
-    } else {
-      if (captions.empty() && !question.captions.empty())
-        captions = encoder.words(question.captions);
-      const double near = nearest_state(word, captions);
-      one.covered = 1 / (1 + std::exp((kEvenCosine - near) / kCosineScale));
+  for (const std::string& word : content_words(question.sentence)) {
+    const bool there = question.in_captions(word);
+    result.push_back({word, there ? 1.0 : 0.0, there});
+  }
+  const auto is_there = [](const QueryWord& word) { return word.in_captions; };
+  if (std::all_of(result.begin(), result.end(), is_there)) return result;
+  // What follows takes longer than all of a search: the encoder reads the captions.
+  const std::vector<std::string> nearest = question.nearest_captions();
+  if (nearest.empty()) return result;
+  const auto captions = encoder.words(nearest);
+  for (const encoders::WordState& state : encoder.words(question.sentence)) {
+    for (QueryWord& word : result) {
+      if (word.in_captions || word.word != state.typed) continue;
+      word.covered =
+          1 / (1 + std::exp((kEvenCosine - nearest_state(state, captions)) / kCosineScale));
     }
-    result.push_back(std::move(one));
   }
   return result;
 }

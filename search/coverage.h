@@ -20,8 +20,9 @@ bool is_function_word(const std::string& word);
 /// What the captions of the best hits say of a sentence's words.
 struct CoverageQuestion {
   std::string sentence;
-  std::vector<std::string> captions;  ///< the nearest, some tens of them
-  /// Whether one of these captions has a word in any of its forms.
+  /// The nearest captions, some tens of them; asked for only where a word stands in none.
+  std::function<std::vector<std::string>()> nearest_captions;
+  /// Whether a caption of the best hits has a word in any of its forms.
   std::function<bool(const std::string& word)> in_captions;
 };
 

@@ -36,10 +36,6 @@ constexpr int kMinQueryFrames = kFramesPerToken;  // as clips that are embedded
 constexpr int64_t kCaptionClips = 50;             // whose captions are compared one by one
 constexpr size_t kMomentHits = 50;                // whose windows are embedded
 
-Error no_word(const std::string& text) {
-  return Error("'" + text + "' holds no word; write letters or digits");
-}
-
 }  // namespace
 
 MotionSearch::Impl::Impl(std::shared_ptr<const retriever::Retriever> shared,
@@ -55,7 +51,8 @@ MotionSearch::Impl::Impl(std::shared_ptr<const retriever::Retriever> shared,
 
 void MotionSearch::Impl::read_state() const {
   state = std::make_shared<SearchState>(
-      index::VectorIndex::open(index_path, database, retriever->hash()), database.clips());
+      index::VectorIndex::open(index_path, database, retriever->hash()), database.clips(),
+      database.guessed_captions());
 }
 
 void MotionSearch::Impl::refresh() const {
@@ -69,9 +66,8 @@ std::optional<std::vector<int64_t>> MotionSearch::Impl::allowed_clips(
   for (const std::string& word : sentence.unwanted) {
     const std::string quoted = db::quote_caption_words(word);
     if (quoted.empty()) throw no_word(word);
-    for (const db::CaptionMatch& match : database.match_captions(quoted)) {
-      filter.excluded_clips.insert(match.clip_id);
-    }
+    const std::vector<int64_t> with = database.clips_with_words(quoted);
+    filter.excluded_clips.insert(with.begin(), with.end());
   }
   if (!query.like_clip.empty()) {
     const db::Clip clip = database.clip(stored_clip(query.like_clip));

@@ -26,6 +26,7 @@ enum class VectorsNeeded { index, bodies, captions };
 /// A sentence as search understands it, with what the database says of its words.
 struct WordedQuery {
   SpelledSentence sentence;
+  std::string language;               ///< SearchAnswer::language
   std::vector<WordVariant> variants;  ///< the sentence, and its mirror image if it names a side
 };
 
@@ -65,8 +66,13 @@ struct MotionSearch::Impl {
   /// The clips that answer a sentence by its words, captions and motions.
   SearchAnswer search_words(const SearchQuery& query, const Sentence& sentence) const;
   SearchScene word_scene(const SearchQuery& query, const Sentence& sentence) const;
-  WordedQuery worded_query(const SearchQuery& query, const Sentence& sentence) const;
-  SpelledSentence spelled(const std::string& sentence) const;
+  /// All that such a search reads from the database; what it computes from it needs no lock.
+  SearchScene locked_word_scene(const SearchQuery& query, const Sentence& sentence) const;
+  WordedQuery worded_query(const SearchQuery& query, const Sentence& sentence,
+                           const WordIndex& index) const;
+  /// Fills in `language`, too.
+  SpelledSentence spelled(const std::string& sentence, const WordIndex& index,
+                          std::string& language) const;
   std::vector<QueryWord> coverage(const WordedQuery& worded, const SearchScene& scene,
                                   const std::vector<RankedClip>& ranked) const;
 };

@@ -132,6 +132,10 @@ void check_query(const SearchQuery& query) {
   }
 }
 
+Error no_word(const std::string& text) {
+  return Error("'" + text + "' holds no word; write letters or digits");
+}
+
 bool asks_by_words(const SearchQuery& query) {
   return query.by != SearchBy::motion && !query.motion && query.like_clip.empty();
 }

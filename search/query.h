@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "index/vector_table.h"
+#include "remomask/error.h"
 #include "remomask/search.h"
 
 namespace remomask::search {
@@ -25,6 +26,9 @@ bool asks_by_words(const SearchQuery& query);
 /// Throws Error for a query that asks for nothing, or for things that exclude
 /// each other.
 void check_query(const SearchQuery& query);
+
+/// For a text without a letter or digit.
+Error no_word(const std::string& text);
 
 /// The similarity of a query to clips: cos(text, clip), cos(motion, clip), or
 /// where body parts were chosen the mean of their cosines; of sentence and

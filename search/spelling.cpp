@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cstdlib>
 
+#include "search/lower_case.h"
+
 namespace remomask::search {
 
 namespace {
@@ -11,11 +13,6 @@ namespace {
 constexpr size_t kLettersForTwoSteps = 9;
 
 bool is_plain_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
-
-std::string lower(std::string word) {
-  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return word;
-}
 
 std::string nearest_word(const std::string& word,
                          const std::unordered_map<std::string, int>& vocabulary) {
@@ -72,7 +69,7 @@ SpelledSentence correct_spelling(const std::string& sentence,
       continue;
     }
     const std::string typed = sentence.substr(i, end - i);
-    const std::string word = lower(typed);
+    const std::string word = lower_case(typed);
     i = end;
     const bool fine =
         word.size() < kMinSpelledLetters || is_word(word) || vocabulary.contains(word);

@@ -6,14 +6,11 @@
 #include <unordered_set>
 #include <vector>
 
+#include "search/lower_case.h"
+
 namespace remomask::search {
 
 namespace {
-
-std::string lower_word(std::string word) {
-  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return word;
-}
 
 bool is_article(const std::string& word) {
   static const std::unordered_set<std::string> words = {"a",    "an",  "the", "this", "that",
@@ -44,9 +41,9 @@ std::string generic_subject(const std::string& sentence) {
   std::vector<std::string> words;
   for (std::string word; stream >> word;) words.push_back(word);
   size_t mover = 0;
-  if (!words.empty() && is_article(lower_word(words[0]))) mover = 1;
-  if (mover + 1 >= words.size() || !is_mover(lower_word(words[mover])) ||
-      !is_third_person(lower_word(words[mover + 1]))) {
+  if (!words.empty() && is_article(lower_case(words[0]))) mover = 1;
+  if (mover + 1 >= words.size() || !is_mover(lower_case(words[mover])) ||
+      !is_third_person(lower_case(words[mover + 1]))) {
     return sentence;
   }
   std::string generic = "a person";

@@ -9,10 +9,12 @@ namespace {
 
 constexpr const char* kScoreStage = "text-score";
 
-WordScore read_score(const nn::ModelStage& stage, const std::string& path) {
+std::optional<WordScore> read_score(const nn::ModelStage& stage, const std::string& path,
+                                    DamagedScore damaged) {
   try {
     return stage.config.get<WordScore>();
   } catch (const nlohmann::json::exception& error) {
+    if (damaged == DamagedScore::is_none) return std::nullopt;
     throw FileError(path, 0,
                     std::string("its search score is damaged: ") + error.what() +
                         "; fit it again: remomask evaluate search --fit");
@@ -21,12 +23,12 @@ WordScore read_score(const nn::ModelStage& stage, const std::string& path) {
 
 }  // namespace
 
-WordModel WordModel::open(const std::string& path) {
+WordModel WordModel::open(const std::string& path, DamagedScore damaged) {
   WordModel model;
   model.encoder =
       std::make_shared<const encoders::SentenceEncoder>(encoders::SentenceEncoder::open(path));
   if (nn::has_stage(path, kScoreStage)) {
-    model.score = read_score(nn::load_stage(path, kScoreStage), path);
+    model.score = read_score(nn::load_stage(path, kScoreStage), path, damaged);
   }
   return model;
 }

@@ -20,8 +20,7 @@ double sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
 /// Weights of a logistic regression whose first column is the constant. Columns whose weight
 /// would be negative are left out, the worst first, until none is.
 Eigen::VectorXd logistic_regression(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right,
-                                    const Eigen::VectorXd& weight, const Eigen::VectorXd& offset,
-                                    double ridge) {
+                                    const Eigen::VectorXd& offset, double ridge) {
   const Eigen::Index width = rows.cols();
   std::vector<bool> used(static_cast<size_t>(width), true);
   for (;;) {
@@ -30,10 +29,8 @@ Eigen::VectorXd logistic_regression(const Eigen::MatrixXd& rows, const Eigen::Ve
       const Eigen::VectorXd p = (rows * beta + offset).unaryExpr(&sigmoid);
       Eigen::VectorXd penalty = Eigen::VectorXd::Constant(width, ridge);
       penalty(0) = 0;
-      Eigen::VectorXd gradient =
-          rows.transpose() * (weight.cwiseProduct(right - p)) - penalty.cwiseProduct(beta);
-      const Eigen::VectorXd curvature =
-          weight.cwiseProduct(p.cwiseProduct(Eigen::VectorXd::Ones(p.size()) - p));
+      Eigen::VectorXd gradient = rows.transpose() * (right - p) - penalty.cwiseProduct(beta);
+      const Eigen::VectorXd curvature = p.cwiseProduct(Eigen::VectorXd::Ones(p.size()) - p);
       Eigen::MatrixXd hessian = rows.transpose() * curvature.asDiagonal() * rows;
       hessian.diagonal() += penalty + Eigen::VectorXd::Constant(width, 1e-9);
       for (Eigen::Index c = 0; c < width; ++c) {
@@ -58,20 +55,18 @@ Eigen::VectorXd logistic_regression(const Eigen::MatrixXd& rows, const Eigen::Ve
 
 struct Regression {
   Eigen::MatrixXd rows;
-  Eigen::VectorXd right, weight, offset;
+  Eigen::VectorXd right, offset;
 
   Regression(const std::vector<JudgedFeatures>& pairs, Eigen::Index width)
       : rows(static_cast<Eigen::Index>(pairs.size()), width),
         right(rows.rows()),
-        weight(rows.rows()),
         offset(Eigen::VectorXd::Zero(rows.rows())) {
     for (size_t i = 0; i < pairs.size(); ++i) {
       right(static_cast<Eigen::Index>(i)) = pairs[i].right ? 1 : 0;
-      weight(static_cast<Eigen::Index>(i)) = pairs[i].weight;
     }
   }
   Eigen::VectorXd solve(double ridge) const {
-    return logistic_regression(rows, right, weight, offset, ridge);
+    return logistic_regression(rows, right, offset, ridge);
   }
 };
 
@@ -87,7 +82,15 @@ void check_pairs(const std::vector<JudgedFeatures>& pairs) {
 
 double WordScore::logit(const WordFeatures& features) const {
   const double cosine = features.motion.value_or(0);
-  if (!features.captions) return motion_only_bias + motion_only * cosine;
+  const double undescribed = motion_only_bias + motion_only * cosine;
+  if (!features.captions) return undescribed;
+  if (features.described < 1) {
+    WordFeatures if_right = features;
+    if_right.described = 1;
+    const double p = features.described * probability(if_right) +
+                     (1 - features.described) * sigmoid(undescribed);
+    return std::log(p / (1 - p));
+  }
   return bias + best * features.best + mean * features.mean + words * features.words +
          (features.other_side ? other_side : 0) + motion * cosine + share * features.share;
 }

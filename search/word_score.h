@@ -9,6 +9,7 @@ namespace remomask::search {
 /// What is known of a sentence and one clip.
 struct WordFeatures {
   bool captions = false;  ///< the clip has captions; without, only `motion` counts
+  double described = 1;   ///< probability that they say what it shows; below 1 for guessed ones
   double best = 0;        ///< highest cosine of the sentence and a caption
   double mean = 0;        ///< mean cosine over the captions
   double words = 0;       ///< BM25 of the best caption, divided by the highest of all clips
@@ -25,7 +26,8 @@ struct WordScore {
   double bias = 0, best = 0, mean = 0, words = 0, other_side = 0, motion = 0, share = 0;
   double motion_only_bias = 0, motion_only = 0;
 
-  /// The log-odds. A motion that is not embedded counts as one of cosine 0.
+  /// The log-odds. A motion that is not embedded counts as one of cosine 0. Guessed captions count
+  /// by their probability, and the motion alone for the rest.
   double logit(const WordFeatures& features) const;
   double probability(const WordFeatures& features) const;
 };
@@ -36,7 +38,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WordScore, bias, best, mean, words, other_sid
 struct JudgedFeatures {
   WordFeatures features;
   bool right = false;
-  double weight = 1;
 };
 
 /// Maximum likelihood with a penalty of `ridge` / 2 per squared weight (Newton's method). `worded`

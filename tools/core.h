@@ -8,6 +8,7 @@ namespace remomask::tools {
 
 struct AblateCommand;
 struct CheckedFile;
+struct DescribeCommand;
 struct EditCommand;
 struct EvaluateCalibrationCommand;
 struct EvaluateEvaluatorCommand;
@@ -29,6 +30,7 @@ struct TrainCommand;
 struct Core {
   void (*ablate)(const AblateCommand&, Program&);
   CheckedFile (*check_file)(const std::string&);
+  void (*describe)(const DescribeCommand&, Program&);
   void (*edit)(const EditCommand&, Program&);
   void (*evaluate_calibration)(const EvaluateCalibrationCommand&, Program&);
   void (*evaluate_evaluator)(const EvaluateEvaluatorCommand&, Program&);

@@ -2,6 +2,7 @@
 #include "tools/ablate_command.h"
 #include "tools/check_command.h"
 #include "tools/core.h"
+#include "tools/describe_command.h"
 #include "tools/edit_command.h"
 #include "tools/evaluate_command.h"
 #include "tools/generate_command.h"
@@ -16,6 +17,7 @@ extern "C" __attribute__((visibility("default"))) const Core* remomask_core(int 
   static constexpr Core commands = {
       .ablate = run_ablate,
       .check_file = check_core_file,
+      .describe = run_describe,
       .edit = run_edit,
       .evaluate_calibration = run_evaluate_calibration,
       .evaluate_evaluator = run_evaluate_evaluator,

@@ -8,6 +8,7 @@ void register_db(CLI::App& app, Program& program) {
   group->require_subcommand(1);
   register_db_list(*group, program);
   register_db_change(*group, program);
+  register_db_describe(*group, program);
   register_db_exchange(*group, program);
   register_db_upkeep(*group, program);
 }

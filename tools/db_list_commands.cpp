@@ -77,6 +77,11 @@ void register_show(CLI::App& group, Program& program) {
         if (database.embedding(retriever, id)) retrievers.push_back(retriever);
       }
       clip["embedded"] = retrievers;
+      for (const db::GuessedCaption& guess : database.guessed_captions()) {
+        if (guess.clip_id != id) continue;
+        clip["guessed_captions"].push_back(
+            {{"text", guess.text}, {"probability", guess.probability}});
+      }
       clips.push_back(clip);
     }
     if (program.json) return program.print_json({{"clips", clips}});

@@ -54,11 +54,13 @@ void run_evaluate_calibration(const EvaluateCalibrationCommand& command, Program
   }
   if (!command.plot.empty()) {
     evaluation::write_reliability_diagram(
-        command.plot, {fmt::format("Calibration of search: fitted on {}, checked on {}",
-                                   input.split, command.check),
-                       fmt::format("{} and {} hits; expected calibration error {:.3f}",
-                                   fitted.right.size(), checked.right.size(), error),
-                       calibration, bins, checked.similarities});
+        command.plot, {.heading = fmt::format("Calibration of search: fitted on {}, checked on {}",
+                                              input.split, command.check),
+                       .note = fmt::format("{} and {} hits; expected calibration error {:.3f}",
+                                           fitted.right.size(), checked.right.size(), error),
+                       .calibration = calibration,
+                       .bins = bins,
+                       .similarities = checked.similarities});
   }
   if (program.json) {
     nlohmann::json reliability = nlohmann::json::array();

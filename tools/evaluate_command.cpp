@@ -93,6 +93,7 @@ void register_search_prompts(CLI::App& parent, Program& program) {
       ->required();
   command->add_flag("--fit", options->fit,
                     "fit the score of search to these prompts and store it in the text file");
+  command->add_option("--plot", options->plot, "reliability diagram of the probabilities (.png)");
   add_resamples(*command, options->resamples);
   command->callback([options, &program] { core(program).evaluate_search(*options, program); });
 }

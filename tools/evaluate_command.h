@@ -64,7 +64,7 @@ struct EvaluateQueriesCommand {
 struct EvaluateSearchCommand {
   FileOptions files;
   FilterOptions filter;
-  std::string prompts;
+  std::string prompts, plot;
   bool fit = false;
   std::optional<int> resamples;
 };

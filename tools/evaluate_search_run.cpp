@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "base/counted.h"
 #include "db/database.h"
 #include "evaluation/prompt_search.h"
+#include "evaluation/reliability_diagram.h"
 #include "nn/model_file.h"
 #include "remomask/error.h"
 #include "search/word_model.h"
@@ -46,6 +49,20 @@ void print_calibration(const evaluation::PromptReport& report) {
   }
 }
 
+void plot_reliability(const EvaluateSearchCommand& command,
+                      const evaluation::PromptReport& report) {
+  evaluation::write_reliability_diagram(
+      command.plot, {.heading = "Search by sentence: " +
+                                std::filesystem::path(command.prompts).filename().string(),
+                     .scored = "probability",
+                     .note = fmt::format("{}; expected calibration error {:.3f}",
+                                         counted(static_cast<int64_t>(report.pairs.size()), "hit"),
+                                         report.calibration_error),
+                     .calibration = search::fit_calibration(report.probabilities, report.right),
+                     .bins = report.bins,
+                     .similarities = report.probabilities});
+}
+
 nlohmann::json report_json(const EvaluateSearchCommand& command,
                            const evaluation::PromptReport& report) {
   nlohmann::json bins = nlohmann::json::array();
@@ -73,7 +90,8 @@ void run_evaluate_search(const EvaluateSearchCommand& command, Program& program)
   const auto prompts = evaluation::read_search_prompts(command.prompts);
   const std::string model_path = command.files.model_path();
   const std::string text_path = text_file(command.files);
-  search::WordModel words = search::WordModel::open(text_path);
+  search::WordModel words = search::WordModel::open(
+      text_path, command.fit ? search::DamagedScore::is_none : search::DamagedScore::is_refused);
   const auto retriever = std::make_shared<const retriever::Retriever>(
       retriever::open_retriever(model_path, words.encoder));
   if (!words.score) {
@@ -110,6 +128,7 @@ void run_evaluate_search(const EvaluateSearchCommand& command, Program& program)
   const evaluation::PromptReport report = measure();
   program.finish_progress();
   if (command.fit) search::store_word_score(text_path, *words.score);
+  if (!command.plot.empty()) plot_reliability(command, report);
   if (program.json) return program.print_json(report_json(command, report));
   fmt::print("{} of {}, {} clips\n", counted(static_cast<int64_t>(prompts.size()), "prompt"),
              command.prompts, labels.size());

@@ -84,6 +84,12 @@ std::string words_text(const std::vector<QueryWord>& words,
   return text;
 }
 
+std::string language_text(const std::string& language) {
+  if (language.empty()) return "";
+  return fmt::format("this looks like {}; remomask understands English: translate the sentence",
+                     language);
+}
+
 SidecarText read_sidecar_text(const std::string& motion_path) {
   const auto sidecar = formats::read_sidecar(motion_path);
   if (!sidecar) return {};

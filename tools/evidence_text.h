@@ -19,6 +19,9 @@ std::string evidence_refusal(const std::vector<Evidence>& evidence);
 std::string words_text(const std::vector<QueryWord>& words,
                        const std::vector<CorrectedWord>& corrected = {});
 
+/// That a sentence is in no language that is understood, in a line for people. Empty for English.
+std::string language_text(const std::string& language);
+
 /// Title and subtitle of a motion file for a contact sheet, from its sidecar; empty without one.
 /// Sidecars of version 0.1, whose members are strings, are read, too. Throws FileError for a
 /// sidecar that is neither.

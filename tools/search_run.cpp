@@ -40,6 +40,7 @@ nlohmann::json query_json(const SearchCommand& options) {
 
 nlohmann::json motion_hit_json(const MotionHit& hit) {
   nlohmann::json json = pipeline::hit_document(hit);
+  if (hit.parts && hit.parts->guess) json["parts"]["guess"] = *hit.parts->guess;
   json["folded"] = hit.folded;
   json["tags"] = hit.clip.tags;
   if (hit.moment) {
@@ -72,11 +73,20 @@ std::string shown_caption(const MotionHit& hit) {
   return hit.clip.captions.empty() ? "" : hit.clip.captions.front();
 }
 
+/// What is to be known of the caption that follows.
+std::string marks(const MotionHit& hit) {
+  std::string text = hit.as_mirrored ? "(mirrored) " : "";
+  if (hit.parts && hit.parts->guess) {
+    text += fmt::format("(guessed, {:.0f} %) ", 100 * *hit.parts->guess);
+  }
+  return text;
+}
+
 void print_hit(const MotionHit& hit) {
   std::string where = fmt::format("{:5.1f} s", clip_seconds(hit.clip));
   if (hit.moment) where += fmt::format(", {:.1f} to {:.1f} s", hit.moment->start, hit.moment->end);
   fmt::print("{:3}  {}  {}  {:<32} {}{}\n", hit.rank, score_text(hit), where, hit.clip.name,
-             (hit.as_mirrored ? "(mirrored) " : "") + shown_caption(hit),
+             marks(hit) + shown_caption(hit),
              hit.folded > 0 ? fmt::format(" (+{} of the same motion)", hit.folded) : "");
 }
 
@@ -88,7 +98,8 @@ void print_answer(const SearchAnswer& answer) {
                counted(answer.candidates, "clip"), answer.refused->clip.name,
                score_text(*answer.refused));
   }
-  const std::string lead = words_text(answer.words, answer.corrected);
+  std::string lead = language_text(answer.language);
+  if (lead.empty()) lead = words_text(answer.words, answer.corrected);
   if (!lead.empty()) fmt::print("{}; nearest:\n", lead);
   for (const MotionHit& hit : answer.hits) print_hit(hit);
 }
@@ -115,6 +126,7 @@ void search_clips(const SearchCommand& options, Program& program) {
   for (const CorrectedWord& word : answer.corrected) {
     document["corrected"].push_back({{"typed", word.typed}, {"read", word.read}});
   }
+  if (!answer.language.empty()) document["language"] = answer.language;
   document["hits"] = nlohmann::json::array();
   for (const MotionHit& hit : answer.hits) document["hits"].push_back(motion_hit_json(hit));
   if (answer.refused) document["refused"] = motion_hit_json(*answer.refused);

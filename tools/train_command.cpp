@@ -15,9 +15,11 @@ void register_train(CLI::App& app, Program& program) {
                   "remomask train all --db motions.sqlite --preset base -o run");
   command
       ->add_option("stage", options->stage,
-                   "retriever, tokenizer, masked, residual, all (of these), evaluator")
+                   "retriever, tokenizer, masked, residual, all (of these), evaluator, words (an "
+                   "adapter of the sentence encoder)")
       ->required()
-      ->check(CLI::IsMember({"retriever", "tokenizer", "masked", "residual", "all", "evaluator"}));
+      ->check(CLI::IsMember(
+          {"retriever", "tokenizer", "masked", "residual", "all", "evaluator", "words"}));
   command->add_option("--db", options->database, "database with splits train and val")->required();
   command->add_option("-o,--output", options->folder, "folder of the stage files")->required();
   command->add_option("--preset", options->preset, "sizes of all networks")
@@ -32,7 +34,7 @@ void register_train(CLI::App& app, Program& program) {
   command
       ->add_option("--text", options->text_file,
                    "text file of the sentence encoder that the model reads sentences with, copied "
-                   "into the folder; default: the shipped one")
+                   "into the folder (words: that is adapted); default: the shipped one")
       ->check(CLI::ExistingFile);
   command
       ->add_option("--tune-text-layers", options->tuned_text_layers,

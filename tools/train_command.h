@@ -25,4 +25,7 @@ struct TrainCommand {
 
 void run_train(const TrainCommand& command, Program& program);
 
+/// The stage "words": an adapter of the sentence encoder, which is no part of a model.
+void run_train_words(const TrainCommand& command, Program& program);
+
 }  // namespace remomask::tools

@@ -89,6 +89,7 @@ void print_trained(const std::string& path, Program& program) {
 }  // namespace
 
 void run_train(const TrainCommand& options, Program& program) {
+  if (options.stage == "words") return run_train_words(options, program);
   const training::TrainingSplits clips = training::load_splits(options.database, options.sources);
   const training::StageFile file = [&](const std::string& stage) {
     return (fs::path(options.folder) / (stage + ".safetensors")).string();

@@ -91,6 +91,9 @@ struct WordParts {
   double words = 0;              ///< BM25, divided by that of the clip with the best; 0: no word
   double share = 0;              ///< of the sentence's words, by weight, that its captions have
   std::optional<double> motion;  ///< cosine of the sentence and the motion, by the retriever
+  /// Set: nobody has described the clip, and the caption is a guess that is right with this
+  /// probability.
+  std::optional<double> guess;
 };
 
 struct MotionHit {
@@ -129,6 +132,9 @@ struct SearchAnswer {
   std::vector<QueryWord> words;  ///< of a sentence, in its order; none in a search by motion
   std::vector<CorrectedWord> corrected;
   std::string sentence;              ///< as it was read; empty: as it was typed
+  /// The language that the sentence seems to be in, "Spanish" or "another language", if that is not
+  /// English, which is all that is understood.
+  std::string language;
   int64_t candidates = 0;            ///< clips that pass the filter
   int64_t boosted = 0;               ///< of these, clips with one of the boost words
   int64_t unsearched = 0;            ///< clips that the retriever has not embedded yet

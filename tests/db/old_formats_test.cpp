@@ -55,7 +55,7 @@ TEST(OldFormats, AllAreUpgradedWhenTheyAreWritten) {
     const std::string path = old_database(folder, version);
     expect_content(db::Database(path, db::OpenMode::read_write));
     EXPECT_TRUE(db::check_database(path).defects.empty());
-    EXPECT_EQ(db::upgrade_database(path).version_before, 5);
+    EXPECT_EQ(db::upgrade_database(path).version_before, 6);
   }
 }
 

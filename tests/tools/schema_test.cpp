@@ -148,6 +148,7 @@ TEST(Schema, DescribesErrors) {
 
 TEST(Schema, DescribesSearches) {
   EXPECT_EQ(fault_of("search.json", run_json({"search", "someone waves", "--moments"})), "");
+  EXPECT_EQ(fault_of("search.json", run_json({"search", "una persona camina"})), "");
   EXPECT_EQ(
       fault_of("search.json", run_json({"search", "someone waves", "--min-similarity", "0.999"})),
       "");
