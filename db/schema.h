@@ -7,37 +7,37 @@ namespace remomask::db {
 /// Marks a SQLite file as a motion database ("RMMK").
 constexpr int64_t kApplicationId = 0x524d4d4b;
 constexpr int64_t kSchemaVersion = 5;
-/// Files from this version on can be read without an upgrade.
+/// The oldest version that can be read without an upgrade.
 constexpr int64_t kOldestReadableVersion = 2;
-/// Of the version that keeps a log of the changed vectors and of who wrote.
+/// The first version with a log of the changed vectors and of the writers.
 constexpr int64_t kLoggingVersion = 3;
-/// Of the version whose clips, motions and vectors have checksums.
+/// The first version with checksums of clips, motions and vectors.
 constexpr int64_t kChecksumVersion = 4;
-/// Of the version that keeps vectors of captions.
+/// The first version with vectors of captions.
 constexpr int64_t kCaptionVectorVersion = 5;
 
-/// Makes the tables in an empty file.
+/// Creates the tables in an empty file.
 void create_schema(const SqliteConnection& connection);
 
 /// Throws Error unless the file is a motion database of this or an older version and holds the
-/// tables, views and triggers of that version and no others: those of a stranger would run with
+/// tables, views and triggers of that version and no others: foreign ones would run along with
 /// our statements.
 void check_schema(const SqliteConnection& connection);
 
-/// Brings an older version to the present one in one transaction; `generation`
-/// stays, as no clip and no vector changes. Needs a connection that may write.
+/// Upgrades an older version to the current one in one transaction; `generation` stays the same,
+/// since no clip and no vector changes. Needs a writable connection.
 void upgrade_schema(const SqliteConnection& connection);
 
-/// Throws Error that says how to upgrade when the file is too old to be read.
+/// Throws Error that says how to upgrade if the file is too old to be read.
 void require_readable_schema(const SqliteConnection& connection);
 
 /// 36 characters as in RFC 4122, version 4.
 std::string random_uuid();
 
-/// Gives the database another uuid.
+/// Gives the database a new UUID.
 void renew_identity(const SqliteConnection& connection);
 
-/// True for a file in which no table was made yet.
+/// Whether no table has been created in the file yet.
 bool is_empty_database(const SqliteConnection& connection);
 
 }  // namespace remomask::db
