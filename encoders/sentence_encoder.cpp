@@ -68,7 +68,7 @@ SentenceEncoder& SentenceEncoder::operator=(SentenceEncoder&&) noexcept = defaul
 
 SentenceEncoder SentenceEncoder::open(const std::string& path) {
   const auto stages = nn::load_model(path);
-  const nn::ModelStage& base = nn::require_stage(stages, kTextEncoderStage, path);
+  const nn::ModelStage base = nn::require_stage(stages, kTextEncoderStage, path);
   auto impl = std::make_unique<Impl>();
   try {
     const BertConfig config = read_bert_config(base.config);
