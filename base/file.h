@@ -6,16 +6,16 @@
 
 namespace remomask {
 
-/// Whole content of a file. Throws FileError when it cannot be read.
+/// Whole content of a file. Throws FileError if it cannot be read.
 std::string read_file(const std::string& path);
 
-/// Whether a file is on the disk when its writing returns. Either way a kill
-/// leaves it old or new; without the wait a power cut may leave it cut off, which
-/// suits files that can be made again and whose damage is noticed.
+/// Whether the call that writes a file waits until it is on the disk. Either way a kill
+/// leaves the old or the new file; without the wait a power cut may truncate it, which
+/// is acceptable for files that can be made again and whose damage is noticed.
 enum class Durability { power_cuts, kills };
 
 /// Writes `content` so that `path` holds either its old content or all of the
-/// new one, whatever happens meanwhile: temporary name beside it, fsync,
+/// new content, whatever happens in between: temporary file beside it, fsync,
 /// rename. Throws FileError (disk full, no permission); the old file stays.
 void write_file_atomically(const std::string& path, std::string_view content,
                            Durability durability = Durability::power_cuts);

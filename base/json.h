@@ -6,11 +6,11 @@
 
 namespace remomask {
 
-/// Deepest nesting that is read. Writing JSON recurses once a level, so that a file from a stranger
-/// could overflow the stack; nothing of ours is nested deeper than eight levels.
+/// Maximum nesting that is read. Writing JSON recurses once per level, so that a hostile file
+/// could overflow the stack; our own JSON is nested at most eight levels deep.
 inline constexpr int kMaxJsonDepth = 100;
 
-/// Parses JSON text. Throws nlohmann::json::exception for text that is no JSON or is nested deeper
+/// Parses JSON text. Throws nlohmann::json::exception for text that is not JSON or is nested deeper
 /// than kMaxJsonDepth.
 nlohmann::json parse_json(std::string_view text);
 

@@ -5,15 +5,15 @@
 
 namespace remomask {
 
-/// Stands before the tag in the temporary names of files (AtomicFile).
+/// Precedes the tag in the temporary names of files (AtomicFile).
 inline constexpr const char* kTemporaryMarker = ".tmp-";
 
-/// Part of a temporary name that tells whose it is: machine and process.
+/// The part of a temporary name that identifies its owner: machine and process.
 std::string process_tag();
 
 /// Removes from `folder` the files and folders whose names hold `marker` followed by the tag of a
-/// process of this machine that runs no more (and what SQLite adds to such a name). Looks once a
-/// process into each folder; what cannot be removed stays.
+/// process of this machine that no longer runs (and what SQLite adds to such a name). Looks into
+/// each folder once per process; what cannot be removed stays.
 void remove_leftovers(const std::string& folder, std::string_view marker);
 
 }  // namespace remomask

@@ -23,7 +23,7 @@ struct Preset {
   bool operator==(const Preset&) const = default;
 };
 
-/// Every preset there is.
+/// All presets.
 const std::vector<Preset>& all_presets();
 
 /// "tiny", "base", "momask", "momask-base", ...

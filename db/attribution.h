@@ -7,15 +7,15 @@
 
 namespace remomask::db {
 
-/// What the licence of a data set asks to be said of its clips. It is stored with
-/// them, so that a copy of the database carries it.
+/// The attribution that the licence of a data set requires. It is stored in the database, so that
+/// every copy carries it.
 std::optional<std::string> attribution(const Database& database, const std::string& source);
 
-/// Replaces it; an empty text removes it. Throws Error when no clip is of `source`
-/// and for text that is not UTF-8.
+/// Replaces the attribution; an empty text removes it. Throws Error if no clip belongs to `source`
+/// or if the text is not UTF-8.
 void set_attribution(Database& database, const std::string& source, const std::string& text);
 
-/// Adds a text to what is there, in a line of its own, unless it says so already.
+/// Appends a line to the attribution unless it already contains it.
 void add_attribution(Database& database, const std::string& source, const std::string& text);
 
 }  // namespace remomask::db

@@ -86,7 +86,7 @@ std::vector<CaptionMatch> Database::match_captions(const std::string& fts_query,
     if (sqlite3_errcode(connection.handle()) != SQLITE_ERROR) throw;
     const std::string message = sqlite3_errmsg(connection.handle());
     throw Error(
-        "the words '" + fts_query + "' are no query" + error_place(fts_query, message) + " (" +
+        "'" + fts_query + "' is not a valid query" + error_place(fts_query, message) + " (" +
         message +
         R"(); use words, "phrases", prefix*, AND, OR, NOT and brackets, and put words with )"
         R"(other signs into "quotes")");

@@ -8,7 +8,7 @@
 
 namespace remomask::db {
 
-/// Checksums of what the tables hold, exact to the bit (the content hash of a clip rounds to
+/// Checksums of what the tables hold, bit for bit (the content hash of a clip rounds to
 /// 0.1 mm, so that equal motions are found). They are stored since format 4.
 
 /// Of a clip's row, its captions in order and its tags; not of its id and its motion.

@@ -10,24 +10,24 @@
 
 namespace remomask::db {
 
-/// "key=value" -> condition. Throws Error when there is no "=" or no key.
+/// Parses "key=value". Throws Error if the "=" or the key is missing.
 LabelCondition parse_label_condition(const std::string& text);
 
-/// Whether a clip's labels answer a condition.
+/// Whether a clip's labels satisfy a condition.
 bool has_label(const nlohmann::json& labels, const LabelCondition& condition);
 
-/// Ids of the clips that pass, ascending. Throws Error for a split that cannot
-/// exist, for a label key, tag or licence that no clip has (a typing mistake
+/// Ids of the clips that pass the filter, ascending. Throws Error for an unknown split,
+/// for a label key, tag or licence that no clip has (a typing mistake
 /// would silently find nothing), for a minimum above the maximum, and for a
-/// caption query that is none.
+/// malformed caption query.
 std::vector<int64_t> matching_clips(const Database& database, const ClipFilter& filter);
 
-/// The same with clips that were read from that state of the database before.
+/// The same for clips that were already read from this state of the database.
 std::vector<int64_t> matching_clips(const Database& database, const std::vector<Clip>& clips,
                                     const ClipFilter& filter);
 
-/// The same among clips of any origin. A caption query needs the
-/// database: throws Error when there is one.
+/// The same for clips of any origin. A caption query needs the database, so a filter with one
+/// throws Error.
 std::vector<int64_t> matching_clips(const std::vector<Clip>& clips, const ClipFilter& filter);
 
 }  // namespace remomask::db

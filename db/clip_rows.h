@@ -7,11 +7,11 @@
 
 namespace remomask::db {
 
-/// What to do about a damaged clip, as the end of a message.
+/// What to do about a damaged clip; ends a message.
 inline constexpr const char* kReplaceClip =
     "remove the clip and add its file again, or restore a snapshot";
 
-/// Whether every value is a number of metres that a motion can hold; false for NaN.
+/// Whether every value is a plausible number of metres; false for NaN.
 bool all_near(const std::vector<float>& positions);
 
 /// All clips with their captions and tags, by id. Throws Error that names a clip whose row,

@@ -21,7 +21,7 @@ struct Clip : ClipInfo {
 /// Captions that one clip can have.
 constexpr int kCaptionsOfClip = 1024;
 
-/// What to change of a clip; what is not given stays.
+/// Changes to a clip; members that are not set stay as they are.
 struct ClipChanges {
   std::optional<std::vector<std::string>> captions;
   std::optional<nlohmann::json> labels;  ///< JSON merge patch (RFC 7396): null removes a label
@@ -29,10 +29,10 @@ struct ClipChanges {
   std::optional<std::vector<std::string>> tags;
 };
 
-/// A clip whose captions answer a full-text query.
+/// A clip whose captions match a full-text query.
 struct CaptionMatch {
   int64_t clip_id = 0;
-  double bm25 = 0;  ///< of its best caption, as SQLite's FTS5 counts: lower is better
+  double bm25 = 0;  ///< of its best caption, as SQLite's FTS5 computes it: lower is better
 };
 
 /// Vectors of one clip made by one retriever.
@@ -40,16 +40,16 @@ struct ClipEmbedding {
   int64_t clip_id = 0;
   std::vector<float> motion;  ///< global vector, L2-normalised
   std::vector<float> parts;   ///< six part vectors, concatenated
-  std::vector<float> text;    ///< of the captions, mean, L2-normalised; the R_t of this clip
+  std::vector<float> text;    ///< mean over the captions, L2-normalised; the R_t of this clip
 };
 
-/// Clips of which vectors were stored or removed, ascending.
+/// Clips whose vectors were stored or removed, ascending.
 struct EmbeddingChanges {
   std::vector<int64_t> present;  ///< have vectors now
-  std::vector<int64_t> absent;   ///< have none, or are gone
+  std::vector<int64_t> absent;   ///< have none, or were removed
 };
 
-/// A caption, or another text, with the vector that a sentence encoder made of it.
+/// A caption, or another text, with its vector from a sentence encoder.
 struct CaptionVector {
   std::string text;
   std::vector<float> vector;  ///< L2-normalised
@@ -64,11 +64,11 @@ struct GuessedCaption {
 
 enum class OpenMode { read_only, read_write, create };
 
-/// The motion database: one SQLite file (WAL), the truth of everything that is
-/// searched. Not thread-safe: one object a thread.
+/// The motion database: one SQLite file (WAL), the source of truth for everything that is
+/// searched. Not thread-safe: use one object per thread.
 class Database {
  public:
-  /// Throws Error when the file is missing, locked, not a database, or made by
+  /// Throws Error if the file is missing, locked, not a database, or written by
   /// a newer program. A database of an older version is upgraded when it is
   /// opened for writing; one of format 1 is refused when it is opened for reading.
   Database(const std::string& path, OpenMode mode);
@@ -79,28 +79,28 @@ class Database {
   const std::string& path() const;
   /// Identity of this database; a copy keeps it.
   std::string uuid() const;
-  /// Grows with every change of clips or embeddings: an index knows its state.
+  /// Increases with every change of clips or embeddings; an index records it.
   int64_t generation() const;
-  /// Random token of the Database object that wrote this generation; empty when
-  /// that was in format 2. With uuid and generation it names a state: copies
-  /// that were changed apart reach the same generation by other writers.
+  /// Random token of the Database object that wrote this generation; empty for
+  /// format 2. Together with UUID and generation it identifies a state: copies
+  /// that were changed separately reach the same generation with different writers.
   std::string writer_of(int64_t generation) const;
 
   // Clips.
 
-  /// Stores a clip and its motion, returns its id. Throws Error for a name or
-  /// content that is already there.
+  /// Stores a clip and its motion and returns its id. Throws Error for a name or
+  /// a content hash that is already stored.
   int64_t add_clip(const Clip& clip, const Motion& motion);
   /// Removes all clips cut from one file, with their captions, motions and
-  /// embeddings, and the note of its import; returns how many.
+  /// embeddings, and the note of its import; returns their number.
   int remove_clips(const std::string& source, const std::string& source_file);
-  /// Returns whether that changed anything. Changed captions take the clip's
-  /// embeddings of all retrievers with them. Throws Error for a clip that is not
-  /// there and for values that add_clip() refuses.
+  /// Returns whether anything changed. A change of the captions removes the clip's
+  /// embeddings of all retrievers. Throws Error for an unknown
+  /// clip and for values that add_clip() refuses.
   bool update_clip(int64_t id, const ClipChanges& changes);
-  /// Removes these clips with all that belongs to them. The notes of imports
-  /// stay: an import of the same files does not bring the clips back. Throws
-  /// Error, and removes nothing, when one is not there.
+  /// Removes these clips with all that belongs to them. The import notes
+  /// stay: importing the same files does not bring the clips back. Throws
+  /// Error, and removes nothing, if one of them is unknown.
   void remove(const std::vector<int64_t>& ids);
   std::optional<int64_t> find_name(const std::string& name) const;
   std::optional<int64_t> find_content(const std::string& content_hash) const;
@@ -110,20 +110,20 @@ class Database {
   std::vector<Clip> clips() const;
   Clip clip(int64_t id) const;
   Motion motion(int64_t id) const;
-  /// The clips whose captions answer a query in the language of SQLite's FTS5
-  /// (words are compared by their stem, without case and accents), best first,
+  /// The clips whose captions match a query in the syntax of SQLite's FTS5
+  /// (words are compared by their stem, ignoring case and accents), best first,
   /// then by id; negative `limit`: all. Throws Error for an invalid query.
   std::vector<CaptionMatch> match_captions(const std::string& fts_query, int limit = -1) const;
 
-  /// Ids of the clips whose captions answer such a query, ascending, without their scores.
+  /// Ids of the clips whose captions match such a query, ascending, without their scores.
   std::vector<int64_t> clips_with_words(const std::string& fts_query) const;
-  /// Whether a caption of this clip answers such a query.
+  /// Whether a caption of this clip matches such a query.
   bool clip_has_words(int64_t clip_id, const std::string& fts_query) const;
 
   // The import log.
 
-  /// Notes of one import, so that it can go on and be repeated: the fingerprint
-  /// says which content of the file, imported how, is stored.
+  /// Notes about imported files, so that an import can be resumed and repeated: the fingerprint
+  /// identifies the content of a file and the options that it was imported with.
   bool file_is_imported(const std::string& source, const std::string& file,
                         const std::string& fingerprint) const;
   void note_imported_file(const std::string& source, const std::string& file,
@@ -136,43 +136,43 @@ class Database {
   /// Replaces all vectors of `retriever_hash`.
   void store_embeddings(const std::string& retriever_hash,
                         const std::vector<ClipEmbedding>& embeddings);
-  /// Stores vectors of some clips; those of others stay.
+  /// Stores vectors of some clips; those of other clips stay.
   void add_embeddings(const std::string& retriever_hash,
                       const std::vector<ClipEmbedding>& embeddings);
-  /// By clip id.
+  /// In the order of the clip ids.
   std::vector<ClipEmbedding> embeddings(const std::string& retriever_hash) const;
-  /// Of these clips, in the order of `ids`. Throws Error when one has none.
+  /// Of these clips, in the order of `ids`. Throws Error if one of them has none.
   std::vector<ClipEmbedding> embeddings(const std::string& retriever_hash,
                                         const std::vector<int64_t>& ids) const;
   /// Ids, ascending, of the clips that this retriever has embedded; reads no vector.
   std::vector<int64_t> embedded_clips(const std::string& retriever_hash) const;
-  /// Which vectors of this retriever have changed after that generation; costs no
-  /// more than they. Nothing when the log of the changes does not reach so far
-  /// back, as in a database of format 2.
+  /// Which vectors of this retriever have changed after that generation; the cost is proportional
+  /// to their number. Nothing if the log of the changes does not reach back
+  /// that far, as in a database of format 2.
   std::optional<EmbeddingChanges> embedding_changes(const std::string& retriever_hash,
                                                     int64_t generation) const;
-  /// Motion vectors alone, [ids][width] in the order of `ids`. Throws Error when
+  /// Motion vectors alone, [ids][width] in the order of `ids`. Throws Error if
   /// a clip has none or one of another width.
   std::vector<float> motion_vectors(const std::string& retriever_hash,
                                     const std::vector<int64_t>& ids, int width) const;
-  /// Retrievers of which vectors are stored.
+  /// Hashes of the retrievers whose vectors are stored.
   std::vector<std::string> retrievers() const;
-  /// Of one clip; nothing when this retriever has not embedded it.
+  /// Of one clip; nothing if this retriever has not embedded it.
   std::optional<ClipEmbedding> embedding(const std::string& retriever_hash, int64_t clip_id) const;
 
   // Vectors of captions, made by sentence encoders.
 
-  /// Captions, each once and ascending, of which this encoder has no vector here.
+  /// The captions without a vector of this encoder, each once, ascending.
   std::vector<std::string> captions_without_vector(const std::string& encoder_hash) const;
   /// Stores vectors; those of other texts stay.
   void add_caption_vectors(const std::string& encoder_hash,
                            const std::vector<CaptionVector>& vectors);
-  /// Removes the vectors of this encoder whose captions no clip has any more, and those of other
-  /// encoders; returns how many.
+  /// Removes the vectors of this encoder whose captions no clip has any more, and all vectors of
+  /// other encoders; returns their number.
   int64_t drop_unused_caption_vectors(const std::string& encoder_hash);
-  /// By text, ascending. Throws Error for a vector that is damaged.
+  /// In ascending order of the texts. Throws Error for a damaged vector.
   std::vector<CaptionVector> caption_vectors(const std::string& encoder_hash) const;
-  /// Encoders of which vectors are stored.
+  /// Hashes of the encoders whose vectors are stored.
   std::vector<std::string> caption_encoders() const;
 
   // Guessed captions. They are kept apart from those of people: Clip::captions, the full-text
@@ -203,9 +203,9 @@ class Database {
   std::unique_ptr<Impl> impl_;
 };
 
-/// While it lives, all reads of `database` see one state of it, whatever other
-/// programs write meanwhile; writing through `database` is refused. Inside a
-/// transaction, or another snapshot, it does nothing. `database` must outlive it.
+/// During its lifetime all reads of `database` see the same state, even if other
+/// programs write to it; writing through `database` is refused. Inside a
+/// transaction or another snapshot it does nothing. `database` must outlive it.
 class ReadSnapshot {
  public:
   explicit ReadSnapshot(const Database& database);

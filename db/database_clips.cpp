@@ -31,8 +31,9 @@ void check_tags(const std::vector<std::string>& tags, const std::string& subject
     const bool printable = std::none_of(tag.begin(), tag.end(),
                                         [](char c) { return static_cast<unsigned char>(c) < ' '; });
     if (!bare || !printable) {
-      throw Error(subject + "'" + tag +
-                  "' is no tag; use a word or words, without spaces around or line breaks");
+      throw Error(
+          subject + "'" + tag +
+          "' is not a tag; use one or more words without line breaks or surrounding spaces");
     }
   }
 }

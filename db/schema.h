@@ -12,22 +12,22 @@ constexpr int64_t kSchemaVersion = 7;
 constexpr int64_t kUnsealedVersion = 6;
 /// Files from this version on can be read without an upgrade.
 constexpr int64_t kOldestReadableVersion = 2;
-/// Of the version that keeps a log of the changed vectors and of who wrote.
+/// The first version with a log of the changed vectors and of the writers.
 constexpr int64_t kLoggingVersion = 3;
-/// Of the version whose clips, motions and vectors have checksums.
+/// The first version with checksums of clips, motions and vectors.
 constexpr int64_t kChecksumVersion = 4;
-/// Of the version that keeps vectors of captions.
+/// The first version with vectors of captions.
 constexpr int64_t kCaptionVectorVersion = 5;
 /// Of the version that keeps guessed captions.
 constexpr int64_t kGuessedCaptionVersion = 6;
 /// Of the version whose pages have checksums.
 constexpr int64_t kPageChecksumVersion = 7;
 
-/// Makes the tables in an empty file.
+/// Creates the tables in an empty file.
 void create_schema(const SqliteConnection& connection);
 
 /// Throws Error unless the file is a motion database of this or an older version and holds the
-/// tables, views and triggers of that version and no others: those of a stranger would run with
+/// tables, views and triggers of that version and no others: foreign ones would run along with
 /// our statements.
 void check_schema(const SqliteConnection& connection);
 
@@ -45,10 +45,10 @@ void require_readable_schema(const SqliteConnection& connection);
 /// 36 characters as in RFC 4122, version 4.
 std::string random_uuid();
 
-/// Gives the database another uuid.
+/// Gives the database a new UUID.
 void renew_identity(const SqliteConnection& connection);
 
-/// True for a file in which no table was made yet.
+/// Whether no table has been created in the file yet.
 bool is_empty_database(const SqliteConnection& connection);
 
 }  // namespace remomask::db

@@ -31,7 +31,7 @@ class SqliteConnection {
   int64_t changes() const { return sqlite3_changes64(handle_); }
   bool in_transaction() const { return sqlite3_get_autocommit(handle_) == 0; }
   [[noreturn]] void fail() const;
-  /// For calls that return their code instead of keeping it in the connection.
+  /// For calls that return their error code instead of keeping it in the connection.
   [[noreturn]] void fail(int code) const;
   sqlite3* handle() const { return handle_; }
   /// Lets triggers use the full-text index, once the schema is known to be ours.
@@ -63,7 +63,7 @@ class SqliteStatement {
   SqliteStatement& bind(int parameter, int64_t value);
   SqliteStatement& bind(int parameter, std::string_view value);
   SqliteStatement& bind(int parameter, std::span<const float> values);
-  /// A name of its own: an int would fit bind(double) as well as bind(int64_t).
+  /// Has its own name because an int would match bind(double) as well as bind(int64_t).
   SqliteStatement& bind_real(int parameter, double value);
   /// A pointer of this type for a function that takes such.
   SqliteStatement& bind_pointer(int parameter, void* pointer, const char* type);
@@ -79,12 +79,12 @@ class SqliteStatement {
   int64_t bytes(int column) const { return sqlite3_column_bytes(statement_, column); }
   double real(int column) const { return sqlite3_column_double(statement_, column); }
   std::string text(int column) const;
-  /// Of a blob as it lies there, valid until the next step.
+  /// The blob in place, valid until the next step.
   std::span<const std::byte> blob(int column) const {
     return {static_cast<const std::byte*>(sqlite3_column_blob(statement_, column)),
             static_cast<size_t>(sqlite3_column_bytes(statement_, column))};
   }
-  /// Throws Error when the blob is not whole floats.
+  /// Throws Error if the size of the blob is not a multiple of a float's.
   std::vector<float> floats(int column) const;
 
  private:

@@ -7,8 +7,8 @@
 
 namespace remomask::db {
 
-/// A database for commands that store: made when it is missing, and taken away
-/// again at the end when nothing was stored in a new one, as after an error.
+/// A database for commands that store: it is created if it is missing, and a new one is
+/// removed again at the end if nothing was stored in it, for example after an error.
 class StoringDatabase {
  public:
   /// Throws Error as Database().

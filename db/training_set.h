@@ -12,7 +12,7 @@ namespace remomask::db {
 
 /// A clip as the networks see it.
 struct TrainingClip {
-  int64_t clip_id = 0;  ///< of the database; a mirror twin made here has the id of its original
+  int64_t clip_id = 0;  ///< in the database; a mirror twin made here has the id of its original
   std::string name;     ///< "M" + name for a twin made here
   bool mirrored = false;
   std::string split;
@@ -35,8 +35,8 @@ struct TrainingSetOptions {
   int max_frames = kMaxClipFrames;  ///< longer clips are cut at the end
 };
 
-/// What the clip shows in one word or phrase: its label "content", else its
-/// first action; "" when it has neither.
+/// What the clip shows, in a word or phrase: its label "content", else its
+/// first action; "" if it has neither.
 std::string clip_content(const Clip& clip);
 
 /// Loads clips and computes their features. Deterministic order (by id, twin

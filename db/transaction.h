@@ -4,8 +4,8 @@
 
 namespace remomask::db {
 
-/// While it lives, all that is stored in `database` is stored together or not at all: commit()
-/// keeps it, an exception or an early return before that undoes it. `database` must outlive it.
+/// All that is stored in `database` during its lifetime is stored together or not at all: commit()
+/// keeps it, and an exception or an early return before that undoes it. `database` must outlive it.
 class Transaction {
  public:
   explicit Transaction(Database& database) : database_(database) { database_.begin(); }

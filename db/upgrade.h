@@ -6,7 +6,7 @@
 namespace remomask::db {
 
 struct UpgradeReport {
-  int64_t version_before = 0, version = 0;  ///< of the format
+  int64_t version_before = 0, version = 0;  ///< of the file format
   uint64_t bytes_before = 0, bytes = 0;     ///< of the file
 };
 

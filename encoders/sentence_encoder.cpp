@@ -72,7 +72,7 @@ SentenceEncoder SentenceEncoder::open(const std::string& path) {
 
 SentenceEncoder SentenceEncoder::of_stages(const std::map<std::string, nn::ModelStage>& stages,
                                            const std::string& origin) {
-  const nn::ModelStage& base = nn::require_stage(stages, kTextEncoderStage, origin);
+  const nn::ModelStage base = nn::require_stage(stages, kTextEncoderStage, origin);
   auto impl = std::make_unique<Impl>();
   try {
     const BertConfig config = read_bert_config(base.config);

@@ -30,9 +30,9 @@ struct AddReport {
   std::vector<std::string> warnings;  ///< what was odd about files that were read all the same
 };
 
-/// Stores single motion files; a clip is called as its file. The clips of
+/// Stores single motion files; a clip is named after its file. The clips of
 /// one file are stored together or not at all; a file that cannot be read, whose
-/// name is taken or whose motion is there already, is reported and left out.
+/// name is taken, or whose motion is already stored is reported and left out.
 AddReport add_files(db::Database& database, const std::vector<std::string>& files,
                     const AddOptions& options);
 

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kUnpackedMarker = "remomask_import-";
-constexpr uint64_t kMostUnpackedBytes = uint64_t{64} << 30;
+constexpr uint64_t kMaxUnpackedBytes = uint64_t{64} << 30;
 constexpr uint64_t kSpareDiskBytes = uint64_t{256} << 20;
 constexpr const char* kArchiveEndings[] = {".tar", ".tar.xz",  ".tar.gz", ".tgz",
                                            ".txz", ".tar.zst", ".tar.bz2"};
@@ -155,7 +155,7 @@ void UnpackedArchive::unpack(const std::string& path, const Monitor& monitor) {
   }
   const uint64_t free_bytes = fs::space(temporary_).available;
   const uint64_t most =
-      std::min(kMostUnpackedBytes, free_bytes > kSpareDiskBytes ? free_bytes - kSpareDiskBytes : 0);
+      std::min(kMaxUnpackedBytes, free_bytes > kSpareDiskBytes ? free_bytes - kSpareDiskBytes : 0);
   const double megabytes = 1e-6 * static_cast<double>(fs::file_size(path));
   uint64_t unpacked = 0;
   struct archive_entry* entry = nullptr;

@@ -15,8 +15,8 @@ struct CaptionEntry {
   std::string split = "none";
   std::string name, group, licence;  ///< of the clip; empty: as the import chooses
   std::vector<std::string> tags;
-  /// The file holds stored positions, which are taken as they are: labels that
-  /// say how a file is read were of the file it once came from.
+  /// The file holds stored positions, which are taken as they are: its labels describe
+  /// how the original file was to be read.
   bool canonical = false;
   long line = 0;
 };
@@ -35,7 +35,7 @@ class CaptionsFile {
   const std::string& path() const { return path_; }
   const std::vector<CaptionEntry>& entries() const { return entries_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// nullptr when the clip is not there.
+  /// nullptr if the file does not name the clip.
   const CaptionEntry* find(const std::string& clip) const;
 
  private:

@@ -8,7 +8,8 @@ std::vector<ClipWindow> clip_windows(int frames, const WindowOptions& options) {
   const auto [shortest, longest, overlap] = options;
   if (shortest < 2 || longest < shortest || overlap < 0 || overlap > longest - shortest) {
     throw Error(
-        "windows make no sense: min_frames must be 2 or more, max_frames at least min_frames, and "
+        "the lengths of the windows contradict each other: min_frames must be 2 or more, "
+        "max_frames at least min_frames, and "
         "the overlap at most their difference");
   }
   if (frames <= longest + kWindowSlack) return {{0, frames}};

@@ -17,14 +17,14 @@ struct WindowOptions {
 };
 
 /// A motion of up to max_frames + kWindowSlack frames stays whole: the networks
-/// drop the last 0.2 s of such a clip, two clips for them would be worse (and
+/// ignore the last 0.2 s of such a clip, which is better than cutting it in two (and
 /// HumanML3D holds clips of 199 frames).
 constexpr int kWindowSlack = kMaxStoredFrames - kMaxClipFrames;
 
-/// Cuts `frames` frames into windows of max_frames that overlap; every frame is
-/// in one. The last is flush with the end. Where it would bring fewer than
-/// min_frames new frames, the one before it is moved to the end instead, or, if
-/// that is the first, the motion is cut into two equal windows.
+/// Cuts `frames` frames into overlapping windows of max_frames that cover every frame.
+/// The last window is flush with the end. If it would add fewer than
+/// min_frames new frames, the window before it is moved to the end instead or, if
+/// that is the first one, the motion is cut into two equal windows.
 /// Throws Error for options that contradict each other.
 std::vector<ClipWindow> clip_windows(int frames, const WindowOptions& options);
 

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPlanFile = "export.json";
-constexpr size_t kMostTogether = 1000;
+constexpr size_t kMaxClipsOfOneFile = 1000;
 
 /// A file name for every clip: its name without signs that mean something to a
 /// file system, with a number where two become the same.
@@ -161,11 +161,11 @@ void export_together(const db::Database& database, const std::vector<int64_t>& i
     throw Error(
         "several motions cannot be put onto a character in one file; leave out one of them");
   }
-  if (ids.size() > kMostTogether) {
+  if (ids.size() > kMaxClipsOfOneFile) {
     throw Error(
         fmt::format("{} clips are too many for one file, which holds up to {}; choose "
                     "fewer, or export a folder",
-                    ids.size(), kMostTogether));
+                    ids.size(), kMaxClipsOfOneFile));
   }
   const db::ReadSnapshot snapshot(database);
   std::vector<Motion> motions;

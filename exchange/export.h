@@ -13,7 +13,7 @@ namespace remomask::exchange {
 struct ExportOptions {
   std::string extension = ".npy";  ///< of the files: a format that save_motion() writes
   MotionWriteOptions writing;
-  /// Goes on with an export of the same clips into the same folder that was stopped or killed.
+  /// Resumes an export of the same clips into the same folder that was stopped or killed.
   bool resume = false;
 };
 

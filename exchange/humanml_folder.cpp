@@ -89,10 +89,10 @@ bool HumanmlFolder::is_layout_of(const std::string& folder) {
 HumanmlFolder::HumanmlFolder(const ImportOptions& options) : MotionSource(options) {
   if (!options_.captions_file.empty()) {
     throw Error(options_.captions_file +
-                ": a HumanML3D or KIT-ML folder has its own texts; leave the captions file away");
+                ": a HumanML3D or KIT-ML folder has its own texts; omit the captions file");
   }
   if (!options_.skeleton_map.empty()) {
-    throw Error("a HumanML3D or KIT-ML folder needs no skeleton map; leave the option away");
+    throw Error("a HumanML3D or KIT-ML folder needs no skeleton map; omit the option");
   }
   find_motions();
   read_splits();

@@ -132,7 +132,7 @@ class DescribedFile {
     try {
       loaded = load_once(options_);
     } catch (const Error&) {
-      return keep(load_once(by_label), warnings);  // mends a rate that makes no sense
+      return keep(load_once(by_label), warnings);  // corrects an impossible rate
     }
     if (std::abs(loaded.source_fps / *labelled_fps - 1) < kRateTolerance) {
       return keep(std::move(loaded), warnings);
@@ -196,7 +196,7 @@ void MotionFolder::find_files() {
             [](const SourceFile& a, const SourceFile& b) { return a.name < b.name; });
 }
 
-/// A clip is called as its file: the stem, or where several files share it, the
+/// A clip is named after its file: the stem, or where several files share it, the
 /// path without the extension, or with it.
 void MotionFolder::name_clips() {
   std::unordered_map<std::string, int> stems, paths;

@@ -24,8 +24,8 @@ struct PreparedClip {
   Motion motion;
 };
 
-/// A data set on disk in one of the layouts that we read. Its const functions
-/// may run in several threads.
+/// A data set on disk in one of the supported layouts. Its const functions
+/// may be called from several threads.
 class MotionSource {
  public:
   explicit MotionSource(const ImportOptions& options) : options_(options) {}
@@ -35,13 +35,13 @@ class MotionSource {
 
   /// In the order in which they are stored.
   const std::vector<SourceFile>& files() const { return files_; }
-  /// What is odd about the data set as a whole.
+  /// Warnings about the data set as a whole.
   const std::vector<std::string>& warnings() const { return warnings_; }
   const ImportOptions& options() const { return options_; }
 
   /// Hash of everything that decides what is stored for file number `i`.
   virtual std::string fingerprint(size_t i) const = 0;
-  /// Its clips. Throws Error with the reason when it cannot be used.
+  /// Its clips. Throws Error with the reason if the file cannot be used.
   virtual std::vector<PreparedClip> prepare(size_t i, std::vector<std::string>& warnings) const = 0;
 
  protected:

@@ -10,9 +10,9 @@
 
 namespace remomask::exchange {
 
-/// Runs work(0) .. work(count - 1) in `threads` threads and hands the results to
-/// `use` in this order, in the calling thread. At most a few results a thread
-/// wait to be used. An exception of either ends everything and is thrown on.
+/// Runs work(0) .. work(count - 1) in `threads` threads and passes the results to
+/// `use` in this order, in the calling thread. At most a few results per thread
+/// are kept waiting. An exception of either stops everything and is rethrown.
 template <typename Result>
 void work_in_order(size_t count, int threads, const std::function<Result(size_t)>& work,
                    const std::function<void(size_t, Result&&)>& use) {

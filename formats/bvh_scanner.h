@@ -35,7 +35,7 @@ class BvhScanner {
   void expect(std::string_view wanted, std::string_view where);
   double read_number(const char* what);
 
-  /// To the next character that is no blank; false at the end of the file.
+  /// Moves to the next character that is not a blank; false at the end of the file.
   bool skip_blank_lines() {
     while (p_ < end_ && (is_bvh_blank(*p_) || is_line_end(*p_))) pass_blank();
     return p_ < end_;

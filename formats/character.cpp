@@ -76,7 +76,8 @@ rig::SourceMotion read_rig(const std::string& path, std::vector<std::string>& wa
   }
   if (extension == ".fbx") return scenes::read_fbx_rig(path, {}, &warnings);
   if (extension == ".bvh") return rest_of_bvh(read_bvh(path));
-  throw FileError(path, 0, "is no character; one is read from .glb, .gltf, .vrm, .fbx or .bvh");
+  throw FileError(path, 0,
+                  "is not a character; characters are read from .glb, .gltf, .vrm, .fbx or .bvh");
 }
 
 WrittenFile write_on_character(const WritingJob& job, std::string_view extension) {

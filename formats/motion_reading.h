@@ -32,7 +32,7 @@ constexpr uint64_t kMaxMotionText = uint64_t{1} << 29;
 /// Throws FileError if a file of so many frames is not read.
 void check_frame_count(size_t frames, const std::string& path);
 
-/// Throws Error for options that make no sense.
+/// Throws Error for invalid options.
 void check_reading_options(const MotionFileOptions& options);
 
 /// Brings a motion to 20 fps, metres and Y up; to canonical form if that is asked for. What the

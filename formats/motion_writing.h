@@ -23,7 +23,7 @@ struct WrittenFile {
   WrittenMotion written;
 };
 
-/// A format that motions are written in, and which choices it has a use for.
+/// A format that motions are written in, and the choices that apply to it.
 struct MotionFormat {
   std::string_view extension;  ///< in lower case, with its dot
   bool rotations = true;       ///< false: only --fps has a meaning
@@ -38,7 +38,7 @@ const std::vector<MotionFormat>& written_formats();
 const MotionFormat& written_format(const std::string& path);
 /// ".bvh, .npy or .glb"
 std::string written_extensions();
-/// Throws Error for a choice that the format has no use for, and for a frame rate out of range.
+/// Throws Error for a choice that does not apply to the format, and for a frame rate out of range.
 void check_write_options(const MotionFormat& format, const MotionWriteOptions& options);
 
 /// Extension of a path in lower case, with its dot; empty if it has none.

@@ -16,7 +16,7 @@ struct NpyHeader {
   size_t data_start = 0;  ///< offset in the file
 };
 
-/// Throws FileError for what is no .npy file, and for arrays of anything but numbers.
+/// Throws FileError for a file that is not .npy, and for arrays of anything but numbers.
 NpyHeader read_npy_header(std::string_view content, const std::string& path);
 
 }  // namespace remomask::formats

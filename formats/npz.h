@@ -19,7 +19,7 @@ struct NpzArrays {
   const NpyArray* find_any(const std::vector<std::string>& wanted) const;
 };
 
-/// What is unpacked at most, whatever the file says.
+/// Limits of what is unpacked, independent of what the file says.
 struct NpzLimits {
   uint64_t array_bytes = uint64_t{1} << 28;
   uint64_t file_bytes = uint64_t{1} << 28;

@@ -47,7 +47,7 @@ std::string why_unread(const std::string& extension) {
       return fmt::format("{}. Motions are read from {}", format.reason, readable_extensions());
     }
   }
-  return fmt::format("is of no file type that is known; motions are read from {}",
+  return fmt::format("has a file type that is not known; motions are read from {}",
                      readable_extensions());
 }
 

@@ -124,8 +124,8 @@ class PoseSolver {
     // tip cos a + up sin a, its height set to `lowest`.
     const double phase = std::atan2(up.y(), tip.y());
     const double wanted = std::acos(std::clamp(lowest / reach, -1.0, 1.0));
-    constexpr double kMostBend = 1.3;
-    const double angle = std::min(std::remainder(phase - wanted, 2 * M_PI), kMostBend);
+    constexpr double kMaxBend = 1.3;
+    const double angle = std::min(std::remainder(phase - wanted, 2 * M_PI), kMaxBend);
     if (angle <= 0) return;
     rotation = (Quat(Eigen::AngleAxisd(-angle, left)) * rotation).normalized();
   }

@@ -15,7 +15,7 @@ constexpr double kConverged = 2e-5;     // m, largest move of a joint in a round
 constexpr double kRodTolerance = 1e-7;  // m
 constexpr double kLargestMove = 0.05;   // m in a round, while far from the constraints
 constexpr double kTolerated = 0.01;     // m; joints farther away gain weight
-constexpr double kMostGain = 8;
+constexpr double kMaxGain = 8;
 constexpr double kFootWeight = 100, kWristWeight = 4, kSpineWeight = 3;
 
 using Weights = std::array<double, kRigJoints>;
@@ -36,7 +36,7 @@ Weights base_weights() {
 void gain_weight(const Pose& target, const Pose& pose, const Weights& base, Weights& weights) {
   for (size_t j = 0; j < kRigJoints; ++j) {
     const double far = (target[j] - pose[j]).squaredNorm() / (kTolerated * kTolerated);
-    weights[j] = std::sqrt(weights[j] * base[j] * std::min(1 + far, kMostGain));
+    weights[j] = std::sqrt(weights[j] * base[j] * std::min(1 + far, kMaxGain));
   }
 }
 

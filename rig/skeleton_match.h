@@ -14,7 +14,7 @@ struct SkeletonMatch {
   std::optional<SkeletonMap> map;    ///< named "rules"; empty if there is no human body
   bool by_names = true;              ///< false: found by shape, since the names say too little
   std::vector<std::string> missing;  ///< parts that neither names nor shape gave
-  std::string objection;             ///< why what was found is no human, if it is none
+  std::string objection;             ///< why what was found is not a human; empty if it is one
 };
 
 /// Recognises any human skeleton: by the names of its joints, whose double meanings the hierarchy

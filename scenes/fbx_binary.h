@@ -15,7 +15,7 @@ struct FbxFacts {
 /// A file of assimp's FBX writer that other readers understand. Every list of nodes gets the empty
 /// record at its end that readers look for (assimp 5.2 leaves it out, and nothing opens its files),
 /// the frame rate and the animations' ends (whole seconds there) are set, and angles do not jump by
-/// full turns between keys. Throws Error for what is no binary FBX 7.5.
+/// full turns between keys. Throws Error for anything but binary FBX 7.5.
 std::string complete_fbx(std::string_view bytes, const FbxFacts& facts);
 
 }  // namespace remomask::scenes

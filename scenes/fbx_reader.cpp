@@ -19,7 +19,7 @@ namespace remomask::scenes {
 namespace {
 
 constexpr uint64_t kLargestFbx = 512ULL << 20;
-constexpr size_t kMostFbxNodes = 100'000;
+constexpr size_t kMaxFbxNodes = 100'000;
 
 Vec3 vec_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 Quat quat_of(const aiQuaternion& q) { return {q.w, q.x, q.y, q.z}; }
@@ -44,7 +44,7 @@ SceneNodes list_nodes(const aiScene& scene, const std::string& path) {
     const auto [node, parent] = waiting.back();
     waiting.pop_back();
     const int at = static_cast<int>(result.nodes.size());
-    if (result.nodes.size() > kMostFbxNodes) throw FileError(path, 0, "has too many nodes");
+    if (result.nodes.size() > kMaxFbxNodes) throw FileError(path, 0, "has too many nodes");
     result.nodes.push_back(node);
     result.parents.push_back(parent);
     for (unsigned c = node->mNumChildren; c-- > 0;) waiting.emplace_back(node->mChildren[c], at);

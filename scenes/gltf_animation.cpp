@@ -117,9 +117,9 @@ std::optional<NodeTimeline> read_gltf_timeline(const GltfDocument& document,
     std::optional<NodeTrack> track = read_channel(document, channel, *samplers);
     if (!track) continue;
     // Many channels may name one long sampler; what they hold together is bounded as well.
-    constexpr size_t kMostNumbersOfAnAnimation = 400'000'000;
+    constexpr size_t kMaxAnimationNumbers = 400'000'000;
     numbers += track->values.size() + track->times.size();
-    if (numbers > kMostNumbersOfAnAnimation) document.fail("has an animation of too many keys");
+    if (numbers > kMaxAnimationNumbers) document.fail("has an animation of too many keys");
     timeline.begin = any ? std::min<double>(timeline.begin, track->times.front())
                          : static_cast<double>(track->times.front());
     timeline.end = std::max<double>(timeline.end, track->times.back());

@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint64_t kLargestGltf = 1ull << 30;
 constexpr int kDeepestJson = 64;
-constexpr size_t kMostNumbers = 200'000'000;  // of an accessor
+constexpr size_t kMaxNumbers = 200'000'000;  // of an accessor
 
 uint32_t little_u32(std::string_view bytes, size_t at) {
   uint32_t value = 0;
@@ -340,14 +340,14 @@ GltfNumbers GltfDocument::accessor(int accessor_index) const {
     fail(fmt::format("accessors[{}] is of an unknown type", accessor_index));
   }
   // Without a view there are no bytes that bound the count, and glTF defines all zeros.
-  if (result.count < 1 || result.count > kMostNumbers / result.width) {
+  if (result.count < 1 || result.count > kMaxNumbers / result.width) {
     fail(fmt::format("accessors[{}] has an impossible count", accessor_index));
   }
   const auto flag = accessor.find("normalized");
   const bool normalized = flag != accessor.end() && flag->is_boolean() && flag->get<bool>();
   const int from = index(accessor, "bufferView", "bufferViews");
-  constexpr size_t kMostWithoutView = 1'000'000;
-  if (from < 0 && result.count > kMostWithoutView) {
+  constexpr size_t kMaxCountWithoutView = 1'000'000;
+  if (from < 0 && result.count > kMaxCountWithoutView) {
     fail(fmt::format("accessors[{}] has an impossible count", accessor_index));
   }
   if (from >= 0) {

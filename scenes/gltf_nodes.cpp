@@ -6,7 +6,7 @@ namespace remomask::scenes {
 
 namespace {
 
-constexpr size_t kMostNodes = 100'000;
+constexpr size_t kMaxNodes = 100'000;
 
 NodeTransform transform_of(const GltfDocument& document, const nlohmann::json& node,
                            size_t number) {
@@ -31,7 +31,7 @@ std::vector<int> children_of_node(const GltfDocument& document, const nlohmann::
   std::vector<int> children;
   const auto found = node.find("children");
   if (found == node.end()) return children;
-  if (!found->is_array()) document.fail(fmt::format("nodes[{}].children is no array", number));
+  if (!found->is_array()) document.fail(fmt::format("nodes[{}].children is not an array", number));
   for (const nlohmann::json& child : *found) {
     if (!child.is_number_unsigned() || child.get<uint64_t>() >= count) {
       document.fail(fmt::format("nodes[{}].children names a node that does not exist", number));
@@ -64,7 +64,7 @@ NodeTransform split_matrix(const double* matrix) {
 
 GltfNodes read_gltf_nodes(const GltfDocument& document) {
   const size_t count = document.list("nodes").size();
-  if (count > kMostNodes) document.fail(fmt::format("has {} nodes, too many for a rig", count));
+  if (count > kMaxNodes) document.fail(fmt::format("has {} nodes, too many for a rig", count));
   GltfNodes nodes;
   nodes.parents.assign(count, -1);
   std::vector<std::vector<int>> children(count);

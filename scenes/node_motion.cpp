@@ -12,7 +12,7 @@ namespace remomask::scenes {
 namespace {
 
 /// Frames times joints that a file may expand to; ten hours of a rich skeleton.
-constexpr double kMostJointFrames = 60'000'000;
+constexpr double kMaxJointFrames = 60'000'000;
 
 Quat to_quat(const Eigen::Vector4d& v) {
   const Quat q(v[3], v[0], v[1], v[2]);
@@ -129,7 +129,7 @@ void add_frames(const NodeTimeline& timeline, const std::vector<int>& joint_of,
                 const std::vector<NodeTransform>& rest, rig::SourceMotion& motion) {
   motion.fps = timeline.key_rate();
   const double frames = std::floor((timeline.end - timeline.begin) * motion.fps + 0.5) + 1;
-  if (!(frames * static_cast<double>(rest.size()) < kMostJointFrames)) {
+  if (!(frames * static_cast<double>(rest.size()) < kMaxJointFrames)) {
     throw Error(fmt::format("has an animation of {:g} s, too long for {} joints",
                             timeline.end - timeline.begin, rest.size()));
   }

@@ -237,7 +237,7 @@ SearchAnswer MotionSearch::search(const SearchQuery& query) const {
 std::vector<CaptionHit> MotionSearch::captions_for(const SearchQuery& query) const {
   check_query(query);
   if (!query.text.empty() || !query.parts.empty() || !query.boost_words.empty()) {
-    throw Error("captions are looked up for a motion alone; leave sentence, words and parts away");
+    throw Error("captions are looked up for a motion alone; omit sentence, words and parts");
   }
   const SearchScene scene = impl_->scene(query, {}, VectorsNeeded::captions);
   const std::vector<float> motion = impl_->vectors(query, {}, scene).motion;

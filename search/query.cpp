@@ -102,7 +102,7 @@ void check_query(const SearchQuery& query) {
   parse_body_parts(query.parts);
   if (query.min_probability) {
     if (!(*query.min_probability >= 0 && *query.min_probability <= 1)) {
-      throw Error(fmt::format("{:g} is no probability; it is a number from 0 to 1",
+      throw Error(fmt::format("{:g} is not a probability; give a number from 0 to 1",
                               *query.min_probability));
     }
     if (moving || query.by == SearchBy::captions || query.by == SearchBy::words) {
@@ -112,7 +112,7 @@ void check_query(const SearchQuery& query) {
     }
   }
   if (query.moments && !query.parts.empty()) {
-    throw Error("moments are found with the whole body; leave the body parts away");
+    throw Error("moments are found with the whole body; omit the body parts");
   }
   if (!query.boost_words.empty() && asks_by_words(query)) {
     throw Error(

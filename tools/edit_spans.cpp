@@ -31,7 +31,7 @@ int parse_time(std::string_view text, const std::string& span, int frames) {
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seconds);
   if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(seconds)) {
     throw Error(
-        fmt::format("span \"{}\": \"{}\" is no time; write seconds, start or end, for "
+        fmt::format("span \"{}\": \"{}\" is not a time; write seconds, start or end, for "
                     "example 1.5-3 or 2-end",
                     span, text));
   }

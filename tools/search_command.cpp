@@ -37,7 +37,7 @@ void add_query_options(CLI::App& command, SearchCommand& options) {
   command.add_option("--motion-weight", query.motion_weight, "of the motion")
       ->capture_default_str();
   command.add_option("--boost-words", query.boost_words,
-                     "clips with any of these words in a caption come up; with --by motion");
+                     "clips with any of these words in a caption rank higher; with --by motion");
   command.add_option("--boost-weight", query.boost_weight, "of the ranking by words")
       ->capture_default_str();
   command.add_flag("--captions", options.captions,

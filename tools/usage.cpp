@@ -53,7 +53,7 @@ void add_option_names(const CLI::App& app, std::vector<std::string>& names) {
   }
 }
 
-/// The commands that were given, outermost first, and the first word that is none.
+/// The commands that were given, outermost first, and the first word that is not a command.
 struct GivenCommands {
   std::vector<const CLI::App*> chain;
   std::string unknown;

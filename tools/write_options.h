@@ -18,7 +18,7 @@ class WriteOptions {
   /// --own-proportions and --common-skeleton, for commands whose motions come from performers.
   void add_own_proportions(CLI::App& command);
 
-  /// Throws Error for a choice that the format of `output` has no use for.
+  /// Throws Error for a choice that does not apply to the format of `output`.
   MotionWriteOptions chosen(const std::string& output) const;
 
  private:

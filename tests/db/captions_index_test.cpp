@@ -84,7 +84,7 @@ TEST_F(CaptionsIndexTest, BrokenQueriesNameThePlace) {
   EXPECT_NE(error("walk ) run").find("at character 6 "), std::string::npos) << error("walk ) run");
   for (const char* query : {"\"walk", "who: walk", "walk's", "AND", "", "*", "^", "walk -"}) {
     const std::string message = error(query);
-    EXPECT_NE(message.find("are no query"), std::string::npos) << query << ": " << message;
+    EXPECT_NE(message.find("is not a valid query"), std::string::npos) << query << ": " << message;
     EXPECT_NE(message.find("quotes"), std::string::npos) << query << ": " << message;
   }
 }
