@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/file.h"
+#include "base/bounded_file.h"
 #include "base/json.h"
 #include "lab/variants.h"
 #include "remomask/error.h"
@@ -18,10 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr uint64_t kMaxCaptionsFile = uint64_t{1} << 29;
+
 /// Captions of JSON Lines files ({"captions": [...], "split": ...}); those of a
 /// test split are left out, as everywhere in training.
 void read_more_captions(const std::string& path, std::vector<std::string>& captions) {
-  const std::string content = read_file(path);
+  const std::string content = read_bounded_file(path, kMaxCaptionsFile);
   size_t begin = 0;
   for (long line = 1; begin < content.size(); ++line) {
     const size_t end = std::min(content.find('\n', begin), content.size());

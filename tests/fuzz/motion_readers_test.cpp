@@ -28,7 +28,8 @@ class MotionReaderFuzz : public ReaderFuzz {
   }
 };
 
-TEST_F(MotionReaderFuzz, Bvh) { fuzz_files(".bvh", 2, seeds_of("a.bvh", "bvh")); }
+// Those of the corpus are no bodies: they are for the syntax.
+TEST_F(MotionReaderFuzz, Bvh) { fuzz_files(".bvh", 2, {written("a.bvh")}); }
 TEST_F(MotionReaderFuzz, Npy) { fuzz_files(".npy", 10, seeds_of("a.npy", "npy")); }
 TEST_F(MotionReaderFuzz, Npz) { fuzz_files(".npz", 2, seeds_of("a.npz", "npz")); }
 TEST_F(MotionReaderFuzz, Gltf) { fuzz_files(".gltf", 1, corpus("gltf")); }

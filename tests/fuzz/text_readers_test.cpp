@@ -30,9 +30,7 @@ TEST_F(TextReaderFuzz, HumanmlTexts) {
 }
 
 TEST_F(TextReaderFuzz, SkeletonMaps) {
-  std::vector<std::string> seeds = corpus("skeleton_map");
-  seeds.push_back(rig::format_skeleton_maps({rig::shipped_skeleton_maps()[0]}));
-  fuzz(seeds, 20,
+  fuzz({rig::format_skeleton_maps({rig::shipped_skeleton_maps()[0]})}, 20,
        [](const std::string& content) { rig::parse_skeleton_maps(content, "map.json"); });
 }
 
@@ -67,6 +65,7 @@ TEST_F(TextReaderFuzz, FullTextQueries) {
   database.add_clip(named_clip("a"), walking_motion(8, 1));
   fuzz(corpus("sentence"), 20, [&](const std::string& content) {
     const std::string query = db::quote_caption_words(content);
+    // SQLite takes an embedded zero for the end of the query.
     if (!query.empty()) database.match_captions(query);
   });
 }
