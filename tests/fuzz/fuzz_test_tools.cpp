@@ -47,7 +47,7 @@ std::string ReaderFuzz::place(const std::string& name, const std::string& conten
 void ReaderFuzz::fuzz(std::vector<std::string> seeds, int weight, const Read& read, bool sound) {
   ASSERT_FALSE(seeds.empty());
   const uint64_t from = number_from("REMOMASK_FUZZ_FROM", 0) * static_cast<uint64_t>(weight);
-  const uint64_t inputs = number_from("REMOMASK_FUZZ_INPUTS", 200) * static_cast<uint64_t>(weight);
+  const uint64_t inputs = number_from("REMOMASK_FUZZ_INPUTS", 10) * static_cast<uint64_t>(weight);
   const size_t sound_inputs = sound ? seeds.size() : 0;
   Mutator mutator(std::move(seeds));
   uint64_t refused = 0;

@@ -38,11 +38,13 @@ TEST_F(MotionReaderFuzz, Vrma) { fuzz_files(".vrma", 1, seeds_of("a.vrma", "vrma
 TEST_F(MotionReaderFuzz, Fbx) { fuzz_files(".fbx", 1, {written("a.fbx")}); }
 
 TEST_F(MotionReaderFuzz, BvhSyntax) {
-  fuzz(corpus("bvh"), 20, [](const std::string& content) { formats::parse_bvh(content, "a.bvh"); });
+  fuzz(corpus("bvh"), 100,
+       [](const std::string& content) { formats::parse_bvh(content, "a.bvh"); });
 }
 
 TEST_F(MotionReaderFuzz, NpySyntax) {
-  fuzz(corpus("npy"), 40, [](const std::string& content) { formats::parse_npy(content, "a.npy"); });
+  fuzz(corpus("npy"), 200,
+       [](const std::string& content) { formats::parse_npy(content, "a.npy"); });
 }
 
 TEST_F(MotionReaderFuzz, AcclaimMotion) {

@@ -23,7 +23,7 @@ TEST_F(TextReaderFuzz, Captions) {
 }
 
 TEST_F(TextReaderFuzz, HumanmlTexts) {
-  fuzz(corpus("humanml"), 20, [&](const std::string& content) {
+  fuzz(corpus("humanml"), 40, [&](const std::string& content) {
     std::vector<std::string> warnings;
     exchange::read_humanml_texts(place("a.txt", content), warnings);
   });
@@ -43,7 +43,7 @@ TEST_F(TextReaderFuzz, Vocabulary) {
 TEST_F(TextReaderFuzz, WordPieces) {
   const text::BertWordPiece words(text::read_bert_vocabulary(
       std::string(REMOMASK_SOURCE_DIR) + "/tests/fuzz/corpus/vocabulary/short.txt"));
-  fuzz(corpus("sentence"), 60, [&](const std::string& content) {
+  fuzz(corpus("sentence"), 200, [&](const std::string& content) {
     const text::BertTokens tokens = words.encode(content, 16);
     ASSERT_LE(tokens.ids.size(), 16u);
     for (const text::WordSpan& word : tokens.words) {
@@ -54,7 +54,7 @@ TEST_F(TextReaderFuzz, WordPieces) {
 }
 
 TEST_F(TextReaderFuzz, Prompts) {
-  fuzz(corpus("sentence"), 60, [&](const std::string& content) {
+  fuzz(corpus("sentence"), 200, [&](const std::string& content) {
     const std::string prompt = text::normalise_prompt(text::utf8_text(content));
     ASSERT_EQ(text::normalise_caption(prompt), prompt);
   });
