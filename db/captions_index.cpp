@@ -36,7 +36,9 @@ std::string error_place(const std::string& query, const std::string& message) {
 }  // namespace
 
 std::string quote_caption_words(const std::string& text) {
-  std::istringstream words(text);
+  std::string without_zeros = text;  // which would end the query
+  std::replace(without_zeros.begin(), without_zeros.end(), '\0', ' ');
+  std::istringstream words(without_zeros);
   std::string query;
   for (std::string word; words >> word;) {
     if (!has_letter(word)) continue;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "base/bounded_file.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
@@ -11,6 +12,7 @@ namespace remomask::formats {
 
 namespace {
 
+constexpr uint64_t kMaxSidecar = uint64_t{1} << 26;
 constexpr const char* kMotionHash = "motion_hash";
 constexpr const char* kChecksum = "checksum";  // of the sidecar without it
 
@@ -34,7 +36,7 @@ std::optional<nlohmann::json> read_sidecar(const std::string& motion_path) {
   const std::string path = sidecar_path(motion_path);
   if (!std::filesystem::exists(path)) return std::nullopt;
   try {
-    nlohmann::json sidecar = parse_json(read_file(path));
+    nlohmann::json sidecar = parse_json(read_bounded_file(path, kMaxSidecar));
     const bool other = sidecar.contains(kMotionHash) &&
                        sidecar.at(kMotionHash) != content_hash(read_file(motion_path));
     if (other) {

@@ -1,6 +1,7 @@
 #include "index/faiss_layout.h"
 
-#include <cstring>
+#include "index/hnsw_layout.h"
+#include "index/layout_walk.h"
 
 namespace remomask::index {
 
@@ -8,44 +9,8 @@ namespace {
 
 constexpr uint64_t kMaxLists = 1 << 20;
 
-/// Takes fields from the front of the bytes, as faiss/impl/index_write.cpp lays them out.
-class Walk {
- public:
-  explicit Walk(std::string_view bytes) : rest_(bytes) {}
-
-  template <typename T>
-  bool take(T& value) {
-    if (rest_.size() < sizeof value) return false;
-    std::memcpy(&value, rest_.data(), sizeof value);
-    rest_.remove_prefix(sizeof value);
-    return true;
-  }
-
-  bool take_name(std::string_view& name) {
-    name = rest_.substr(0, 4);
-    return skip(4, 1);
-  }
-
-  bool skip(uint64_t count, uint64_t size) {
-    if (count > rest_.size() / size) return false;
-    rest_.remove_prefix(count * size);
-    return true;
-  }
-
-  /// A vector of `count` values of `size` bytes, which says its own length before.
-  bool skip_vector(uint64_t count, uint64_t size) {
-    uint64_t stated = 0;
-    return take(stated) && stated == count && skip(count, size);
-  }
-
-  bool at_end() const { return rest_.empty(); }
-
- private:
-  std::string_view rest_;
-};
-
 /// The header of every index: width, count, two unused numbers, trained or not, metric.
-bool walk_header(Walk& walk, const FaissSize& expected) {
+bool walk_header(LayoutWalk& walk, const FaissSize& expected) {
   int32_t width = 0, metric = 0;
   int64_t count = 0, unused = 0;
   uint8_t trained = 0;
@@ -55,13 +20,13 @@ bool walk_header(Walk& walk, const FaissSize& expected) {
          trained <= 1 && walk.take(metric) && (metric <= 1 || walk.take(argument));
 }
 
-bool walk_flat(Walk& walk, const FaissSize& expected) {
+bool walk_flat(LayoutWalk& walk, const FaissSize& expected) {
   return walk_header(walk, expected) && walk.skip_vector(static_cast<uint64_t>(expected.count) *
                                                              static_cast<uint64_t>(expected.width),
                                                          sizeof(float));
 }
 
-bool walk_lists(Walk& walk, const FaissSize& expected, uint64_t lists) {
+bool walk_lists(LayoutWalk& walk, const FaissSize& expected, uint64_t lists) {
   std::string_view name, kind;
   uint64_t stated = 0, code_bytes = 0, sizes = 0;
   if (!walk.take_name(name) || name != "ilar" || !walk.take(stated) || stated != lists ||
@@ -89,7 +54,7 @@ bool walk_lists(Walk& walk, const FaissSize& expected, uint64_t lists) {
          walk.skip(total, code_bytes + sizeof(int64_t));
 }
 
-bool walk_ivf_flat(Walk& walk, const FaissSize& expected) {
+bool walk_ivf_flat(LayoutWalk& walk, const FaissSize& expected) {
   uint64_t lists = 0, probes = 0;
   std::string_view quantizer;
   if (!walk_header(walk, expected) || !walk.take(lists) || lists == 0 || lists > kMaxLists ||
@@ -102,11 +67,18 @@ bool walk_ivf_flat(Walk& walk, const FaissSize& expected) {
          walk_lists(walk, expected, lists);
 }
 
+/// With its vectors behind it, as a Flat index.
+bool walk_hnsw_flat(LayoutWalk& walk, const FaissSize& expected) {
+  std::string_view name;
+  return walk_header(walk, expected) && walk_hnsw_graph(walk, expected.count) &&
+         walk.take_name(name) && name.starts_with("IxF") && walk_flat(walk, expected);
+}
+
 }  // namespace
 
 bool fits_layout(std::string_view bytes, const FaissSize& expected, bool with_ids) {
   if (expected.count < 0 || expected.width < 1) return false;
-  Walk walk(bytes);
+  LayoutWalk walk(bytes);
   std::string_view name;
   if (!walk.take_name(name)) return false;
   if (with_ids) {
@@ -116,6 +88,8 @@ bool fits_layout(std::string_view bytes, const FaissSize& expected, bool with_id
     if (!walk_flat(walk, expected)) return false;
   } else if (name == "IwFl") {
     if (!walk_ivf_flat(walk, expected)) return false;
+  } else if (name == "IHNf") {
+    if (!walk_hnsw_flat(walk, expected)) return false;
   } else {
     return walk_header(walk, expected);
   }

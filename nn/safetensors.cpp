@@ -178,6 +178,10 @@ Header read_header(const std::string& path, FileBytes& source) {
   }
   std::string head(head_bytes, '\0');
   source.read(8, head_bytes, head.data());
+  // The JSON library takes it for the end of the text.
+  if (head.find('\0') != std::string::npos) {
+    throw FileError(path, 0, std::string("broken safetensors header") + kDamaged);
+  }
   const uint64_t data_start = 8 + head_bytes;
   nlohmann::json json = parse_json(head);
   Header header;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/file.h"
+#include "base/bounded_file.h"
 #include "remomask/error.h"
 #include "rig/own_skeleton.h"
 #include "rig/skeleton_match.h"
@@ -13,6 +13,8 @@
 namespace remomask::rig {
 
 namespace {
+
+constexpr uint64_t kMaxMapFile = uint64_t{1} << 24;
 
 const SkeletonMap* shipped_map_named(const std::string& name) {
   for (const SkeletonMap& map : shipped_skeleton_maps()) {
@@ -62,7 +64,8 @@ ChosenSkeletonMap choose_skeleton_map(const SkeletonView& skeleton, const std::s
       throw Error(fmt::format("there is no skeleton map \"{}\"; name a file or one of {}", wanted,
                               names_of_shipped_maps()));
     }
-    const std::vector<SkeletonMap> maps = parse_skeleton_maps(read_file(wanted), wanted);
+    const std::vector<SkeletonMap> maps =
+        parse_skeleton_maps(read_bounded_file(wanted, kMaxMapFile), wanted);
     if (const SkeletonMap* map = fitting_skeleton_map(maps, skeleton)) return {*map, {}};
     warnings.push_back(fmt::format("no map of {} fits this skeleton: \"{}\" misses {}", wanted,
                                    maps[0].name,

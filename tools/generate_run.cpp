@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/bounded_file.h"
 #include "base/counted.h"
-#include "base/file.h"
 #include "formats/animation_formats.h"
 #include "pipeline/motion_document.h"
 #include "remomask/error.h"
@@ -17,6 +17,8 @@
 namespace remomask::tools {
 
 namespace {
+
+constexpr uint64_t kMaxScript = uint64_t{1} << 20;
 
 using Clock = std::chrono::steady_clock;
 
@@ -70,7 +72,7 @@ void print_script(const std::string& path, const ScriptedMotion& made, double se
 void run_script(const GenerateCommand& command, const TextToMotion& remomask,
                 const GenerateOptions& options, Program& program) {
   const auto start = Clock::now();
-  const auto lines = parse_script(read_file(command.script), command.script);
+  const auto lines = parse_script(read_bounded_file(command.script, kMaxScript), command.script);
   const ScriptedMotion made = remomask.script(lines, options, program.monitor());
   program.finish_progress();
   const double seconds = seconds_since(start);

@@ -101,6 +101,7 @@ TEST_F(CaptionsIndexTest, QuotedWordsNeverFail) {
   }
   EXPECT_EQ(find(db::quote_caption_words("LEFT; moonwalk \"person's\"")), (Ids{a}));
   EXPECT_EQ(find(db::quote_caption_words("turn NOT left")), (Ids{}));
+  EXPECT_EQ(error(db::quote_caption_words(std::string("turn l\0eft", 10))), "");
   // A dash that is no ASCII is a word to us and none to SQLite: it asks for nothing.
   EXPECT_EQ(error(db::quote_caption_words("turn \xe2\x80\x94 left")), "");
 }

@@ -4,12 +4,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 
 #include "base/file.h"
 #include "remomask/error.h"
 #include "remomask/motion_file.h"
 #include "tests/db/db_test_tools.h"
 #include "tests/fuzz/mutator.h"
+
+/// FAISS loses memory when it refuses an index of a type that is not walked through before.
+extern "C" const char* __lsan_default_suppressions() { return "leak:faiss::read_index"; }
 
 namespace remomask {
 
@@ -47,7 +51,7 @@ std::string ReaderFuzz::place(const std::string& name, const std::string& conten
 void ReaderFuzz::fuzz(std::vector<std::string> seeds, int weight, const Read& read, bool sound) {
   ASSERT_FALSE(seeds.empty());
   const uint64_t from = number_from("REMOMASK_FUZZ_FROM", 0) * static_cast<uint64_t>(weight);
-  const uint64_t inputs = number_from("REMOMASK_FUZZ_INPUTS", 200) * static_cast<uint64_t>(weight);
+  const uint64_t inputs = number_from("REMOMASK_FUZZ_INPUTS", 10) * static_cast<uint64_t>(weight);
   const size_t sound_inputs = sound ? seeds.size() : 0;
   Mutator mutator(std::move(seeds));
   uint64_t refused = 0;
@@ -65,8 +69,7 @@ void ReaderFuzz::fuzz(std::vector<std::string> seeds, int weight, const Read& re
       FAIL() << "input " << number << " (kept in " << kept << "): " << error.what();
     }
   }
-  RecordProperty("inputs", std::to_string(inputs));
-  RecordProperty("refused", std::to_string(refused));
+  std::cout << "fuzz: " << inputs << " inputs, " << refused << " refused\n";
 }
 
 }  // namespace remomask

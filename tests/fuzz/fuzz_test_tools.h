@@ -11,7 +11,7 @@
 namespace remomask {
 
 /// Gives a reader mutated inputs: it reads them or throws an Error, and never anything else.
-///   REMOMASK_FUZZ_INPUTS=N   inputs of a reader, times its weight. Default 200.
+///   REMOMASK_FUZZ_INPUTS=N   inputs of a reader, times its weight. Default 10.
 ///   REMOMASK_FUZZ_FROM=N     number of the first one, to go on where another run ended.
 class ReaderFuzz : public testing::Test {
  protected:

@@ -28,7 +28,8 @@ class MotionReaderFuzz : public ReaderFuzz {
   }
 };
 
-TEST_F(MotionReaderFuzz, Bvh) { fuzz_files(".bvh", 2, seeds_of("a.bvh", "bvh")); }
+// Those of the corpus are no bodies: they are for the syntax.
+TEST_F(MotionReaderFuzz, Bvh) { fuzz_files(".bvh", 2, {written("a.bvh")}); }
 TEST_F(MotionReaderFuzz, Npy) { fuzz_files(".npy", 10, seeds_of("a.npy", "npy")); }
 TEST_F(MotionReaderFuzz, Npz) { fuzz_files(".npz", 2, seeds_of("a.npz", "npz")); }
 TEST_F(MotionReaderFuzz, Gltf) { fuzz_files(".gltf", 1, corpus("gltf")); }
@@ -37,11 +38,13 @@ TEST_F(MotionReaderFuzz, Vrma) { fuzz_files(".vrma", 1, seeds_of("a.vrma", "vrma
 TEST_F(MotionReaderFuzz, Fbx) { fuzz_files(".fbx", 1, {written("a.fbx")}); }
 
 TEST_F(MotionReaderFuzz, BvhSyntax) {
-  fuzz(corpus("bvh"), 20, [](const std::string& content) { formats::parse_bvh(content, "a.bvh"); });
+  fuzz(corpus("bvh"), 100,
+       [](const std::string& content) { formats::parse_bvh(content, "a.bvh"); });
 }
 
 TEST_F(MotionReaderFuzz, NpySyntax) {
-  fuzz(corpus("npy"), 40, [](const std::string& content) { formats::parse_npy(content, "a.npy"); });
+  fuzz(corpus("npy"), 200,
+       [](const std::string& content) { formats::parse_npy(content, "a.npy"); });
 }
 
 TEST_F(MotionReaderFuzz, AcclaimMotion) {

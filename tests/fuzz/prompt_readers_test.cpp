@@ -14,7 +14,8 @@ TEST_F(PromptReaderFuzz, Scripts) {
 }
 
 TEST_F(PromptReaderFuzz, MinusWords) {
-  fuzz(corpus("sentence"), 60, [](const std::string& content) { search::parse_sentence(content); });
+  fuzz(corpus("sentence"), 200,
+       [](const std::string& content) { search::parse_sentence(content); });
 }
 
 }  // namespace

@@ -23,16 +23,14 @@ TEST_F(TextReaderFuzz, Captions) {
 }
 
 TEST_F(TextReaderFuzz, HumanmlTexts) {
-  fuzz(corpus("humanml"), 20, [&](const std::string& content) {
+  fuzz(corpus("humanml"), 40, [&](const std::string& content) {
     std::vector<std::string> warnings;
     exchange::read_humanml_texts(place("a.txt", content), warnings);
   });
 }
 
 TEST_F(TextReaderFuzz, SkeletonMaps) {
-  std::vector<std::string> seeds = corpus("skeleton_map");
-  seeds.push_back(rig::format_skeleton_maps({rig::shipped_skeleton_maps()[0]}));
-  fuzz(seeds, 20,
+  fuzz({rig::format_skeleton_maps({rig::shipped_skeleton_maps()[0]})}, 20,
        [](const std::string& content) { rig::parse_skeleton_maps(content, "map.json"); });
 }
 
@@ -45,7 +43,7 @@ TEST_F(TextReaderFuzz, Vocabulary) {
 TEST_F(TextReaderFuzz, WordPieces) {
   const text::BertWordPiece words(text::read_bert_vocabulary(
       std::string(REMOMASK_SOURCE_DIR) + "/tests/fuzz/corpus/vocabulary/short.txt"));
-  fuzz(corpus("sentence"), 60, [&](const std::string& content) {
+  fuzz(corpus("sentence"), 200, [&](const std::string& content) {
     const text::BertTokens tokens = words.encode(content, 16);
     ASSERT_LE(tokens.ids.size(), 16u);
     for (const text::WordSpan& word : tokens.words) {
@@ -56,7 +54,7 @@ TEST_F(TextReaderFuzz, WordPieces) {
 }
 
 TEST_F(TextReaderFuzz, Prompts) {
-  fuzz(corpus("sentence"), 60, [&](const std::string& content) {
+  fuzz(corpus("sentence"), 200, [&](const std::string& content) {
     const std::string prompt = text::normalise_prompt(text::utf8_text(content));
     ASSERT_EQ(text::normalise_caption(prompt), prompt);
   });
@@ -67,6 +65,7 @@ TEST_F(TextReaderFuzz, FullTextQueries) {
   database.add_clip(named_clip("a"), walking_motion(8, 1));
   fuzz(corpus("sentence"), 20, [&](const std::string& content) {
     const std::string query = db::quote_caption_words(content);
+    // SQLite takes an embedded zero for the end of the query.
     if (!query.empty()) database.match_captions(query);
   });
 }

@@ -1,6 +1,7 @@
 #include "index/faiss_layout.h"
 
 #include <faiss/IndexFlat.h>
+#include <faiss/IndexHNSW.h>
 #include <faiss/IndexIDMap.h>
 #include <faiss/IndexIVFFlat.h>
 #include <faiss/impl/io.h>
@@ -50,6 +51,32 @@ void expect_no_claims(const std::string& good) {
   EXPECT_FALSE(index::fits_layout(good, {kLayoutCount + 1, kLayoutWidth}, true));
   EXPECT_FALSE(index::fits_layout(good, {kLayoutCount, kLayoutWidth + 1}, true));
   EXPECT_FALSE(index::fits_layout(good + "x", {kLayoutCount, kLayoutWidth}, true));
+}
+
+TEST(FaissLayout, HnswIsWalkedThroughItsGraph) {
+  faiss::IndexHNSWFlat inner(kLayoutWidth, 4);
+  inner.metric_type = faiss::METRIC_INNER_PRODUCT;
+  const std::string good = with_ids(inner);
+  EXPECT_TRUE(index::fits_layout(good, {kLayoutCount, kLayoutWidth}, true));
+  expect_no_claims(good);
+  // The sizes fit, what they hold does not.
+  const auto damaged = [&](auto damage) {
+    faiss::IndexHNSWFlat copy(inner);
+    copy.own_fields = false;
+    damage(copy.hnsw);
+    faiss::IndexIDMap2 index(&copy);
+    index.ntotal = kLayoutCount;
+    index.id_map.assign(kLayoutCount, 1);
+    return !index::fits_layout(serialised(index), {kLayoutCount, kLayoutWidth}, true);
+  };
+  EXPECT_FALSE(damaged([](faiss::HNSW&) {}));
+  EXPECT_TRUE(damaged([](faiss::HNSW& graph) { graph.neighbors[0] = kLayoutCount; }));
+  EXPECT_TRUE(damaged([](faiss::HNSW& graph) { graph.neighbors[0] = -2; }));
+  EXPECT_TRUE(damaged([](faiss::HNSW& graph) { graph.entry_point = kLayoutCount; }));
+  EXPECT_TRUE(damaged([](faiss::HNSW& graph) { graph.max_level = 40; }));
+  EXPECT_TRUE(damaged([](faiss::HNSW& graph) { graph.offsets[1] += 1; }));
+  EXPECT_TRUE(damaged([](faiss::HNSW& graph) { graph.levels[3] = 60; }));
+  EXPECT_TRUE(damaged([](faiss::HNSW& graph) { graph.cum_nneighbor_per_level[1] += 1; }));
 }
 
 TEST(FaissLayout, FlatIsWalkedToItsEnd) {

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -38,8 +39,10 @@ ProgramResult run_program(const std::vector<std::string>& arguments,
     std::this_thread::sleep_for(std::chrono::duration<double>(kill_after_seconds));
     kill(child, signal_number);
   }
-  waitpid(child, &status, 0);
+  rusage usage{};
+  wait4(child, &status, 0, &usage);
   ProgramResult result;
+  result.peak_megabytes = usage.ru_maxrss / 1024;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   result.output = read_file(out);
   result.errors = read_file(err);

@@ -12,6 +12,7 @@ namespace remomask {
 struct ProgramResult {
   int exit_code = -1;  ///< 128 + signal when it was killed
   std::string output, errors;
+  long peak_megabytes = 0;  ///< of its memory
 };
 
 /// Runs the program `remomask` with these arguments; `environment` adds to the
