@@ -64,9 +64,10 @@ SpelledSentence MotionSearch::Impl::spelled(const std::string& sentence, const W
   };
   const std::string usual = usual_spelling(sentence, index.stems());
   SpelledSentence spelled = correct_spelling(usual, is_word, index.vocabulary());
+  const KnownWords known{[&](const std::string& word) { return index.has_word(word); }, is_word};
   // Words of other languages look like typing errors, and typing errors like other languages.
-  language = foreign_language(sentence, is_word);
-  if (language == kAnotherLanguage) language = foreign_language(spelled.text, is_word);
+  language = foreign_language(sentence, known);
+  if (language == kAnotherLanguage) language = foreign_language(spelled.text, known);
   if (!language.empty()) return {usual, {}};
   return spelled;
 }
