@@ -2,7 +2,8 @@
 // thread: from the words to ten hits with what they say of each word. The clips are made in a
 // temporary folder (0.9 GB, a minute): their captions are those of the shipped database with other
 // words in some places, their vectors those of the shipped captions and motions with noise.
-// REMOMASK_CLIPS chooses another number of clips. Read the lines _p50 and _p95.
+// REMOMASK_CLIPS chooses another number of clips, REMOMASK_GALLERY a file to keep them in, which
+// the next run takes as it is. Read the lines _p50 and _p95.
 //
 // Floor: the matrix products of the sentence encoder for twelve word pieces at the GEMM peak, and
 // reading one byte for each number of the caption vectors once.
@@ -76,15 +77,25 @@ class Gallery {
  public:
   Gallery() {
     nn::set_compute_threads(1);
-    std::string name = (std::filesystem::temp_directory_path() / "remomask_bench_XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
-    folder_ = name;
-    path_ = folder_ / "motions.sqlite";
-    fill();
+    if (const char* kept = std::getenv("REMOMASK_GALLERY")) {
+      path_ = kept;
+    } else {
+      std::string name =
+          (std::filesystem::temp_directory_path() / "remomask_bench_XXXXXX").string();
+      if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
+      folder_ = name;
+      path_ = folder_ / "motions.sqlite";
+    }
+    if (!std::filesystem::exists(path_)) fill();
+    caption_count_ = db::Database(path_, db::OpenMode::read_only)
+                         .caption_vectors(words_->encoder->hash())
+                         .size();
     search_ = std::make_unique<search::MotionSearch>(retriever_, words_, path_);
     for (const std::string& sentence : asked()) find(sentence);  // warm
   }
-  ~Gallery() { std::filesystem::remove_all(folder_); }
+  ~Gallery() {
+    if (!folder_.empty()) std::filesystem::remove_all(folder_);
+  }
   Gallery(const Gallery&) = delete;
   Gallery& operator=(const Gallery&) = delete;
 
@@ -95,7 +106,9 @@ class Gallery {
   }
   const search::WordModel& words() const { return *words_; }
   const std::string& path() const { return path_; }
-  double caption_numbers() const { return caption_numbers_; }
+  double caption_numbers() const {
+    return static_cast<double>(caption_count_) * static_cast<double>(words_->encoder->width());
+  }
 
  private:
   void fill() {
@@ -139,7 +152,6 @@ class Gallery {
     for (const auto& [text, vector] : vectors) rows.push_back({text, vector});
     database.add_caption_vectors(words_->encoder->hash(), rows);
     transaction.commit();
-    caption_numbers_ = static_cast<double>(rows.size() * rows.front().vector.size());
     index::VectorIndex::build(database, retriever_->hash()).save(index::default_index_path(path_));
   }
 
@@ -151,7 +163,7 @@ class Gallery {
   std::filesystem::path folder_;
   std::string path_;
   std::unique_ptr<search::MotionSearch> search_;
-  double caption_numbers_ = 0;
+  size_t caption_count_ = 0;
 };
 
 const Gallery& gallery() {

@@ -34,8 +34,6 @@ class CaptionTable {
   }
   /// The same from the cosines themselves.
   CaptionMatch exact_match(size_t clip, const std::vector<float>& query) const;
-  /// The captions with the highest of these cosines, best first.
-  std::vector<int32_t> nearest(const std::vector<float>& cosines, size_t count) const;
 
   const std::string& text(int32_t caption) const { return texts_[static_cast<size_t>(caption)]; }
   /// named_sides() of a caption.

@@ -133,7 +133,8 @@ class Describer {
   std::vector<Neighbour> neighbours(int64_t id, bool own_group) const {
     const db::Clip& clip = *by_id_.at(id);
     std::vector<Neighbour> near;
-    for (const index::VectorHit& hit : index_->search(motions_.at(id).data(), 1, kSought).front()) {
+    const auto hits = index_->search(motions_.at(id).data(), 1, kSought);
+    for (const index::VectorHit& hit : hits.front()) {
       const db::Clip& other = *by_id_.at(hit.clip_id);
       if (other.id == id || (!own_group && other.group == clip.group)) continue;
       near.push_back({&other, hit.similarity});

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "search/coverage.h"
@@ -37,7 +38,8 @@ struct Words {
 // "man", "come") are left out, so that one word can decide.
 constexpr Words kLanguages[] = {
     {"Spanish",
-     "una un el los las del que con por para hacia su sus se y e al lo esta está como muy mientras "
+     "una un el la los las de del sobre alto que con por para hacia su sus se y e al lo esta está "
+     "como muy mientras "
      "luego después persona hombre mujer niño niña alguien chico chica gente mano manos brazo "
      "brazos "
      "pierna piernas pie pies cabeza derecha derecho izquierda izquierdo adelante atrás arriba "
@@ -48,7 +50,8 @@ constexpr Words kLanguages[] = {
      "levanta levantando sienta sentado agacha lanza tira nada nadando trepa sube baja despacio "
      "lentamente rápido rápidamente círculo círculos puñetazo patada"},
     {"French",
-     "une le les des du est et qui que avec pour vers dans sur sa ses il elle puis très pendant en "
+     "une le la les de des du est et qui que avec pour vers dans sur sa ses il elle puis très "
+     "pendant en "
      "au aux un quelqu'un personne homme femme garçon fille enfant gens main mains bras jambe "
      "jambes "
      "pied pieds tête droite gauche avant arrière haut sol chaise marche marcher court courir "
@@ -63,7 +66,8 @@ constexpr Words kLanguages[] = {
      "rennen springt springen tanzt tanzen winkt winken tritt treten schlägt schlagen dreht drehen "
      "hebt heben setzt sitzt steht stehen bückt verbeugt wirft schwimmt klettert kriecht kreis"},
     {"Italian",
-     "uno gli della del dei delle di che con per verso sul sulla nel nella e è si suo sua poi "
+     "uno la lo gli alto della del dei delle di che con per verso sul sulla nel nella e è si suo "
+     "sua poi "
      "molto "
      "mentre un una il persona uomo donna ragazzo ragazza bambino bambina qualcuno mano mani "
      "braccio "
@@ -72,7 +76,8 @@ constexpr Words kLanguages[] = {
      "salutare calcia colpisce gira girare alza siede sedersi seduto lancia nuota sale scende "
      "lentamente piano velocemente cerchio pugno calcio"},
     {"Portuguese",
-     "uma um os dos da das na nas nos com para pela pelo em que e seu sua depois muito enquanto ao "
+     "uma um os de alto sobre dos da das na nas nos com para pela pelo em que e seu sua depois "
+     "muito enquanto ao "
      "à não é está ele ela pessoa homem mulher menino menina alguém rapaz mão mãos braço braços "
      "perna "
      "pernas pé pés cabeça direita direito esquerda esquerdo frente trás cima chão cadeira anda "
@@ -82,13 +87,15 @@ constexpr Words kLanguages[] = {
      "sobe "
      "desce devagar lentamente rápido rapidamente círculo"},
     {"Dutch",
-     "een het de van met naar voor op zijn haar en zich ze hij dan heel terwijl niet iemand vrouw "
+     "een het de van tegen met naar voor op zijn haar en zich ze hij dan heel terwijl niet iemand "
+     "vrouw "
      "jongen meisje mens persoon handen armen benen voet voeten hoofd rechts links rechter linker "
      "rechterhand linkerhand vooruit achteruit vloer stoel loopt lopen wandelt rent rennen springt "
      "springen danst dansen zwaait zwaaien schopt schoppen slaat draait draaien tilt gaat zitten "
      "staat staan buigt gooit zwemt klimt kruipt langzaam snel cirkel rondje"},
     {"Swedish",
-     "en ett och med som är på till för av från sig han hon den sin sitt sedan mycket inte någon "
+     "en ett och över med som är på till för av från sig han hon den sin sitt sedan mycket inte "
+     "någon "
      "människa kvinna pojke flicka barn händer handen armar armarna ben benen fot fötter huvud "
      "höger "
      "vänster framåt bakåt golvet stol går gå springer springa hoppar hoppa dansar dansa vinkar "
@@ -114,10 +121,14 @@ constexpr Words kLanguages[] = {
 
 // Words above that are English, too: they speak for both.
 constexpr const char* kAlsoEnglish[] = {
-    "en",   "i",    "do",   "de",    "sale", "piano", "dans", "op",    "van",   "sol",
-    "rent", "kind", "barn", "court", "main", "pour",  "coup", "per",   "links", "pies",
-    "sin",  "den",  "ben",  "es",    "er",   "dan",   "con",  "lance", "mano",  "na",
-    "si",   "hon",  "il",   "son",   "mans", "staff", "tap",  "calf",  "est",   "terra"};
+    "en",   "i",    "do",   "sale",  "piano", "dans",  "op",    "van",   "sol",
+    "rent", "kind", "barn", "court", "main",  "pour",  "coup",  "links", "pies",
+    "sin",  "ben",  "es",   "er",    "dan",   "con",   "lance", "mano",  "na",
+    "si",   "hon",  "il",   "son",   "mans",  "staff", "tap",   "calf",  "est"};
+
+// Words that English shares with several of these languages: they speak for none.
+constexpr const char* kOfMany[] = {"in",  "an",  "on",   "no",  "me",  "as", "is",   "so",   "was",
+                                   "man", "men", "hand", "arm", "die", "he", "over", "ball", "at"};
 
 /// Language -> how many words of the sentence are its own.
 using Counts = std::unordered_map<const char*, int>;
@@ -138,9 +149,9 @@ const std::unordered_multimap<std::string, const char*>& foreign_words() {
   return known;
 }
 
-bool is_also_english(const std::string& word) {
-  return std::find(std::begin(kAlsoEnglish), std::end(kAlsoEnglish), word) !=
-         std::end(kAlsoEnglish);
+template <size_t count>
+bool is_among(const char* const (&words)[count], const std::string& word) {
+  return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
 std::string language_of_script(const std::string& text) {
@@ -166,34 +177,37 @@ std::string language_of_script(const std::string& text) {
 
 }  // namespace
 
-std::string foreign_language(const std::string& sentence,
-                             const std::function<bool(const std::string&)>& is_english) {
+std::string foreign_language(const std::string& sentence, const KnownWords& known) {
   const std::string text = text::normalise_caption(sentence);
   const std::string by_script = language_of_script(text);
   if (!by_script.empty()) return by_script;
   Counts own;
-  int words = 0, english = 0, unknown = 0;
+  int words = 0, english = 0, unknown = 0, listed = 0;
+  std::unordered_set<std::string> seen;
   for (const std::string& word : text::split_words(text)) {
     const auto first = static_cast<unsigned char>(word[0]);
-    if (first < 0x80 && std::isalpha(first) == 0) continue;
+    if (word.size() < 2 || !seen.insert(word).second || (first < 0x80 && std::isalpha(first) == 0))
+      continue;
     ++words;
     const auto [begin, end] = foreign_words().equal_range(word);
-    if (begin == end || is_also_english(word)) {
-      // "no", "a" and "hand" are words of other languages, too, but speak for English.
-      if (is_english(word)) {
-        ++english;
-      } else {
-        ++unknown;
-      }
-    }
+    if (begin != end) ++listed;
     for (auto one = begin; one != end; ++one) ++own[one->second];
+    if (is_among(kAlsoEnglish, word) || (begin == end && !is_among(kOfMany, word) &&
+                                         (is_function_word(word) || known.in_captions(word)))) {
+      ++english;
+    }
+    if (begin == end && !known.is_word(word)) ++unknown;
   }
   const auto best =
       std::max_element(own.begin(), own.end(), [](const auto& left, const auto& right) {
         return left.second < right.second ||
                (left.second == right.second && std::string_view(left.first) > right.first);
       });
-  if (best != own.end() && best->second > english) return best->first;
+  // One word alone may be borrowed: "pas de deux".
+  if (best != own.end() && best->second > english &&
+      (best->second > 1 || listed + unknown == words)) {
+    return best->first;
+  }
   return words >= 2 && unknown == words ? kAnotherLanguage : "";
 }
 

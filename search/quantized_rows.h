@@ -6,7 +6,8 @@
 namespace remomask::search {
 
 /// Rows of numbers rounded to one byte each, for inner products with all of them: a quarter of the
-/// bytes of floats, which is what takes the time. Of rows of length 1 the error is about 0.0005.
+/// bytes of floats, which is what takes the time. Of rows of length 1 and
+/// some hundreds of numbers the error is about 0.0005.
 class QuantizedRows {
  public:
   QuantizedRows() = default;

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 #include "remomask/error.h"
 #include "search/compounds.h"
@@ -24,6 +25,20 @@ constexpr size_t kCoverageClips = 24;     // best clips in whose captions a word
 /// The text of a clip's tags for the search by words.
 std::string tag_text(const std::vector<std::string>& tags) {
   return fmt::format("{}", fmt::join(tags, ", "));
+}
+
+/// The captions of these clips that are nearest to the sentence, each once.
+std::vector<std::string> nearest_captions(const std::vector<RankedClip>& ranked, size_t count) {
+  std::map<std::string, double> cosines;
+  for (const RankedClip& clip : ranked) {
+    if (clip.parts.best && !clip.as_mirrored) cosines[clip.parts.caption] = *clip.parts.best;
+  }
+  std::vector<std::pair<double, std::string>> order;
+  for (const auto& [caption, cosine] : cosines) order.emplace_back(-cosine, caption);
+  std::sort(order.begin(), order.end());
+  std::vector<std::string> captions;
+  for (size_t i = 0; i < std::min(count, order.size()); ++i) captions.push_back(order[i].second);
+  return captions;
 }
 
 }  // namespace
@@ -64,9 +79,10 @@ SpelledSentence MotionSearch::Impl::spelled(const std::string& sentence, const W
   };
   const std::string usual = usual_spelling(sentence, index.stems());
   SpelledSentence spelled = correct_spelling(usual, is_word, index.vocabulary());
+  const KnownWords known{[&](const std::string& word) { return index.has_word(word); }, is_word};
   // Words of other languages look like typing errors, and typing errors like other languages.
-  language = foreign_language(sentence, is_word);
-  if (language == kAnotherLanguage) language = foreign_language(spelled.text, is_word);
+  language = foreign_language(sentence, known);
+  if (language == kAnotherLanguage) language = foreign_language(spelled.text, known);
   if (!language.empty()) return {usual, {}};
   return spelled;
 }
@@ -103,13 +119,7 @@ std::vector<QueryWord> MotionSearch::Impl::coverage(const WordedQuery& worded,
   question.nearest_captions = [&]() -> std::vector<std::string> {
     // The states of words that the encoder has not learnt say nothing.
     if (!worded.language.empty()) return {};
-    const CaptionTable& table = *scene.caption_table;
-    const auto cosines = table.rough_cosines(worded.variants.front().caption_query);
-    std::vector<std::string> captions;
-    for (const int32_t caption : table.nearest(cosines, kCoverageCaptions)) {
-      captions.push_back(table.text(caption));
-    }
-    return captions;
+    return nearest_captions(ranked, kCoverageCaptions);
   };
   question.in_captions = [&](const std::string& word) {
     const std::vector<QueryTerm> terms = scene.word_index->terms(word);

@@ -10,6 +10,7 @@
 #include "tools/core.h"
 #include "tools/db_commands.h"
 #include "tools/describe_command.h"
+#include "tools/usage.h"
 
 namespace remomask::tools {
 

@@ -131,7 +131,7 @@ struct SearchAnswer {
   std::vector<MotionHit> hits;   ///< best first
   std::vector<QueryWord> words;  ///< of a sentence, in its order; none in a search by motion
   std::vector<CorrectedWord> corrected;
-  std::string sentence;              ///< as it was read; empty: as it was typed
+  std::string sentence;  ///< as it was read; empty: as it was typed
   /// The language that the sentence seems to be in, "Spanish" or "another language", if that is not
   /// English, which is all that is understood.
   std::string language;

@@ -22,10 +22,11 @@ void expect_near_products(const std::vector<float>& rows, int width,
 TEST(QuantizedRowsTest, ProductsOfDirectionsAreNearlyRight) {
   for (const int width : {1, 7, 24, 384, 1000}) {
     const auto rows = random_directions(500, width, 3);
-    expect_near_products(rows, width, random_directions(1, width, 4), width < 8 ? 0.006 : 0.003);
+    // The steps of a number grow with the largest one, which falls with the width.
+    const double tolerance = width < 100 ? 0.01 : 0.003;
+    expect_near_products(rows, width, random_directions(1, width, 4), tolerance);
     // A row with itself: the largest product there is.
-    expect_near_products(rows, width, {rows.begin(), rows.begin() + width},
-                         width < 8 ? 0.006 : 0.003);
+    expect_near_products(rows, width, {rows.begin(), rows.begin() + width}, tolerance);
   }
 }
 

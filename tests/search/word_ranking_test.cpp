@@ -76,8 +76,8 @@ class WordRankingTest : public ::testing::Test {
     const search::SearchState& state = *scene_->state;
     std::vector<std::pair<double, int64_t>> ranked;
     std::map<int64_t, double> motions;
-    for (const index::VectorHit& hit :
-         state.index.search(variant.motion_query.data(), 1, kRankedClips).front()) {
+    const auto hits = state.index.search(variant.motion_query.data(), 1, kRankedClips);
+    for (const index::VectorHit& hit : hits.front()) {
       motions[hit.clip_id] = hit.similarity;
     }
     const unsigned sides = search::named_sides(variant.text);

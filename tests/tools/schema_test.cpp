@@ -146,6 +146,16 @@ TEST(Schema, DescribesErrors) {
   }
 }
 
+TEST(Schema, DescribesGuesses) {
+  const ScratchFolder folder;
+  const std::string database = folder.path("motions.sqlite");
+  std::filesystem::copy_file(std::string(REMOMASK_SOURCE_DIR) + "/models/motions.sqlite", database);
+  std::filesystem::permissions(database, std::filesystem::perms::owner_write,
+                               std::filesystem::perm_options::add);
+  EXPECT_EQ(fault_of("describe.json", run_json({"db", "describe", database})), "");
+  EXPECT_EQ(fault_of("describe.json", run_json({"db", "describe", database, "--remove"})), "");
+}
+
 TEST(Schema, DescribesSearches) {
   EXPECT_EQ(fault_of("search.json", run_json({"search", "someone waves", "--moments"})), "");
   EXPECT_EQ(fault_of("search.json", run_json({"search", "una persona camina"})), "");

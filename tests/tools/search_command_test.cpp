@@ -1,6 +1,8 @@
 // The command `search` on the shipped model and database.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "base/file.h"
 #include "tests/tools/program_runner.h"
 
@@ -96,6 +98,48 @@ TEST(SearchCommand, RefusesBadQueriesClearly) {
     const std::string message = failure(arguments);
     EXPECT_NE(message.find(expected), std::string::npos) << expected << " in " << message;
   }
+}
+
+TEST(SearchCommand, SaysWhichLanguageItDoesNotUnderstand) {
+  const ProgramResult spanish = run_program({"search", "una persona camina", "-k", "2"});
+  EXPECT_EQ(spanish.exit_code, 0);
+  EXPECT_NE(spanish.output.find("this looks like Spanish"), std::string::npos) << spanish.output;
+  EXPECT_EQ(run_json({"search", "una persona camina"})["language"], "Spanish");
+  EXPECT_FALSE(run_json({"search", "a person walks"}).contains("language"));
+  EXPECT_NE(failure({"search", "\xf0\x9f\x91\x8b"}).find("no word"), std::string::npos);
+}
+
+TEST(SearchCommand, FindsWhatWasGuessedAndSaysSo) {
+  const ScratchFolder scratch;
+  const std::string database = scratch.path("motions.sqlite"), wave = scratch.path("unnamed.bvh");
+  std::filesystem::copy_file(std::string(REMOMASK_SOURCE_DIR) + "/models/motions.sqlite", database);
+  std::filesystem::permissions(database, std::filesystem::perms::owner_write,
+                               std::filesystem::perm_options::add);
+  run_json({"generate", "a person waves with the right hand", "--seconds", "3", "--seed", "3", "-o",
+            wave});
+  run_json({"db", "add", database, wave});
+  run_json({"index", database});
+  const auto made = run_json({"db", "describe", database, "--min-probability", "0.05"});
+  ASSERT_EQ(made["described"].size(), 1u) << made;
+  EXPECT_EQ(made["described"][0]["clip"], "unnamed");
+  const auto& captions = made["described"][0]["captions"];
+  EXPECT_EQ(run_json({"db", "show", database, "unnamed"})["clips"][0]["guessed_captions"],
+            captions);
+  const auto found =
+      run_json({"search", captions[0]["text"], "--db", database, "-k", "100", "--ungrouped"});
+  bool seen = false;
+  for (const auto& hit : found["hits"]) {
+    EXPECT_EQ(hit["parts"].contains("guess"), hit["clip"] == "unnamed");
+    if (hit["clip"] != "unnamed") continue;
+    seen = true;
+    EXPECT_TRUE(hit["captions"].empty());
+    EXPECT_EQ(hit["parts"]["guess"], captions[0]["probability"]);
+    EXPECT_LE(hit["probability"], captions[0]["probability"].get<double>() + 0.1);
+  }
+  EXPECT_TRUE(seen);
+  const auto accepted = run_json({"db", "describe", database, "unnamed", "--accept"});
+  EXPECT_EQ(accepted["accepted"][0]["caption"], captions[0]["text"]);
+  EXPECT_EQ(run_json({"db", "describe", database, "--remove"})["removed"], 0);
 }
 
 }  // namespace
