@@ -106,9 +106,10 @@ SqliteConnection::~SqliteConnection() { close(); }
 void SqliteConnection::open(const std::string& uri, int flags) {
   const int code = sqlite3_open_v2(
       uri.c_str(), &handle_, flags | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, page_checksum_vfs());
-  if (code == SQLITE_OK) return;
   if (!handle_) fail(code);
-  fail();
+  if (code != SQLITE_OK) fail();
+  // Else what reads the schema forgets that a page was damaged.
+  sqlite3_extended_result_codes(handle_, 1);
 }
 
 void SqliteConnection::open_for_reading(const std::string& uri) {

@@ -30,7 +30,7 @@ class PageChecksumsTest : public testing::Test {
     db::Clip clip = named_clip("clip " + std::to_string(number));
     clip.tags = {"best"};
     const int64_t id = database.add_clip(clip, walking_motion(40, number));
-    database.add_embeddings("r", {{id, {0.6f, 0.8f}, {0.5f}, {1.f, 0.f}}});
+    database.add_embeddings("n", {{id, {0.6f, 0.8f}, {0.5f}, {1.f, 0.f}}});
   }
 
   /// What a program without the layer does to the file.
@@ -92,7 +92,7 @@ TEST_F(PageChecksumsTest, AZeroedPageIsNoticedUnlessItIsFree) {
     const db::SqliteConnection connection(path_, db::SqliteMode::read_only);
     free = connection.integer("PRAGMA freelist_count");
   }
-  ASSERT_GT(free, 3);
+  ASSERT_GT(free, 0);
   for (size_t page = 1; page < sound.size() / kPage; ++page) {
     std::string damaged = sound;
     damaged.replace(page * kPage, kPage, kPage, '\0');
