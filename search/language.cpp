@@ -121,10 +121,12 @@ constexpr Words kLanguages[] = {
 
 // Words above that are English, too: they speak for both.
 constexpr const char* kAlsoEnglish[] = {
-    "en",   "i",    "do",   "sale",  "piano", "dans",  "op",    "van",   "sol",
-    "rent", "kind", "barn", "court", "main",  "pour",  "coup",  "links", "pies",
-    "sin",  "ben",  "es",   "er",    "dan",   "con",   "lance", "mano",  "na",
-    "si",   "hon",  "il",   "son",   "mans",  "staff", "tap",   "calf",  "est"};
+    "en",      "i",    "do",    "sale", "piano", "dans",  "op",     "van",    "sol",     "rent",
+    "kind",    "barn", "court", "main", "pour",  "coup",  "links",  "pies",   "sin",     "ben",
+    "es",      "er",   "dan",   "con",  "lance", "mano",  "na",     "person", "descend", "heel",
+    "till",    "tilt", "met",   "um",   "per",   "sedan", "sitter", "adam",   "donna",   "springer",
+    "bras",    "nada", "monte", "dos",  "mens",  "em",    "po",     "ve",     "pie",     "han",
+    "pendant", "si",   "hon",   "il",   "son",   "mans",  "staff",  "tap",    "calf",    "est"};
 
 // Words that English shares with several of these languages: they speak for none.
 constexpr const char* kOfMany[] = {"in",  "an",  "on",   "no",  "me",  "as", "is",   "so",   "was",
