@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace remomask::scenes {
 
@@ -16,9 +17,39 @@ std::vector<std::string> animation_names(const GltfDocument& document) {
   return names;
 }
 
+/// Numbers of the nodes that skins name; what is wrong with a skin is said by whoever reads it.
+std::set<uint64_t> skin_joints(const GltfDocument& document) {
+  std::set<uint64_t> nodes;
+  for (size_t s = 0; s < document.list("skins").size(); ++s) {
+    const nlohmann::json joints = document.element("skins", s).value("joints", nlohmann::json());
+    for (const nlohmann::json& node : joints) {
+      if (node.is_number_unsigned()) nodes.insert(node.get<uint64_t>());
+    }
+  }
+  return nodes;
+}
+
+/// Cameras and props have animations of their own, which may come first.
+size_t first_animation_of_joints(const GltfDocument& document) {
+  const std::set<uint64_t> joints = skin_joints(document);
+  for (size_t i = 0; i < document.list("animations").size(); ++i) {
+    const nlohmann::json& animation = document.element("animations", i);
+    const auto channels = animation.find("channels");
+    if (channels == animation.end() || !channels->is_array()) continue;
+    for (const nlohmann::json& channel : *channels) {
+      const auto target = channel.is_object() ? channel.find("target") : channel.end();
+      if (target == channel.end() || !target->is_object()) continue;
+      const auto node = target->find("node");
+      if (node == target->end() || !node->is_number_unsigned()) continue;
+      if (joints.empty() || joints.contains(node->get<uint64_t>())) return i;
+    }
+  }
+  return 0;
+}
+
 size_t choose_animation(const GltfDocument& document, const std::string& wanted) {
   const std::vector<std::string> names = animation_names(document);
-  if (wanted.empty()) return 0;
+  if (wanted.empty()) return first_animation_of_joints(document);
   const auto named = std::find(names.begin(), names.end(), wanted);
   if (named != names.end()) return static_cast<size_t>(named - names.begin());
   const bool digits = wanted.size() < 7 && std::all_of(wanted.begin(), wanted.end(),

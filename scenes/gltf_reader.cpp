@@ -171,7 +171,7 @@ GltfRig read_gltf_rig(const GltfDocument& document, const AnimationChoice& choic
   const size_t animations = document.list("animations").size();
   if (animations > 1 && choice.animation.empty()) {
     result.warnings.push_back(
-        fmt::format("holds {} animations; the first, \"{}\", is read", animations, timeline->name));
+        fmt::format("holds {} animations; \"{}\" is read", animations, timeline->name));
   }
   if (timeline && !timeline->tracks.empty()) {
     try {

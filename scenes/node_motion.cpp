@@ -65,13 +65,17 @@ Eigen::Vector4d NodeTrack::value_at(double time) const {
     return result;
   };
   constexpr size_t kIn = 0, kValue = 1, kOut = 2;
-  const auto after = std::upper_bound(times.begin(), times.end(), time,
+  // Keys have times in float: a frame that falls on a key misses it by their rounding, and would
+  // show the pose before a step.
+  constexpr double kRounding = 1e-6;
+  const double reached = time + kRounding * std::max(1.0, std::abs(time));
+  const auto after = std::upper_bound(times.begin(), times.end(), reached,
                                       [](double t, float key) { return t < key; });
   if (after == times.begin()) return value(0, kValue);
   const auto key = static_cast<size_t>(after - times.begin()) - 1;
   if (key + 1 == times.size() || interpolation == Interpolation::step) return value(key, kValue);
   const double length = static_cast<double>(times[key + 1]) - times[key];
-  const double s = (time - times[key]) / length;
+  const double s = std::max(0.0, time - times[key]) / length;
   const Eigen::Vector4d from = value(key, kValue), to = value(key + 1, kValue);
   if (cubic) {
     const double s2 = s * s, s3 = s2 * s;

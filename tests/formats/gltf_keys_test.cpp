@@ -98,6 +98,33 @@ TEST(GltfKeys, EveryInterpolationGivesItsCurve) {
   EXPECT_NEAR(knee_height(read("2"), 30), 1.5, 1e-6) << "by its number";
 }
 
+TEST(GltfKeys, AFrameOnAKeyShowsItsPose) {
+  SmallGltf file;
+  std::vector<float> times, values;
+  for (int i = 0; i < 100; ++i) {
+    times.push_back(static_cast<float>(i) / 20);
+    values.insert(values.end(), {0, 100 + static_cast<float>(i), 0});
+  }
+  file.animate("step", 1, "translation", "STEP", times, values, 3);
+  const rig::SourceMotion motion = scenes::read_gltf(file.save());
+  ASSERT_EQ(motion.frames, 100);
+  for (int t = 1; t < 100; ++t) {
+    EXPECT_NEAR(knee_height(motion, t) - knee_height(motion, t - 1), 0.01, 1e-5) << t;
+  }
+}
+
+TEST(GltfKeys, AnAnimationOfOtherNodesIsPassedOver) {
+  SmallGltf file;
+  file.animate("camera", 0, "translation", "STEP", {0, 1}, {0, 1, 0, 0, 1, 0}, 3);
+  file.animate("walk", 1, "translation", "STEP", {0, 1}, {0, 100, 0, 0, 200, 0}, 3);
+  file.json()["skins"] = {{{"joints", {1, 2}}}};
+  std::vector<std::string> warnings;
+  const rig::SourceMotion motion = scenes::read_gltf(file.save(), {}, &warnings);
+  EXPECT_NEAR(knee_height(motion, motion.frames - 1) - knee_height(motion, 0), 1, 1e-6);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("\"walk\" is read"), std::string::npos) << warnings[0];
+}
+
 TEST(GltfKeys, TheFirstAnimationIsReadAndSaid) {
   SmallGltf file;
   file.animate("a", 1, "translation", "STEP", {0, 1}, {0, 1, 0, 0, 1, 0}, 3);
