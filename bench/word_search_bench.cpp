@@ -155,11 +155,11 @@ class Gallery {
     index::VectorIndex::build(database, retriever_->hash()).save(index::default_index_path(path_));
   }
 
-  std::shared_ptr<const retriever::Retriever> retriever_ =
-      std::make_shared<const retriever::Retriever>(
-          nn::load_stage(file_named("REMOMASK_MODEL", "base.safetensors"), "retriever"));
   std::shared_ptr<const search::WordModel> words_ = std::make_shared<const search::WordModel>(
       search::WordModel::open(file_named("REMOMASK_TEXT", "text.safetensors")));
+  std::shared_ptr<const retriever::Retriever> retriever_ =
+      std::make_shared<const retriever::Retriever>(retriever::open_retriever(
+          file_named("REMOMASK_MODEL", "base.safetensors"), words_->encoder));
   std::filesystem::path folder_;
   std::string path_;
   std::unique_ptr<search::MotionSearch> search_;

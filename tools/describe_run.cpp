@@ -2,8 +2,6 @@
 
 #include "base/counted.h"
 #include "db/transaction.h"
-#include "encoders/sentence_encoder.h"
-#include "nn/model_file.h"
 #include "retriever/retriever.h"
 #include "search/describe.h"
 #include "tools/describe_command.h"
@@ -12,14 +10,15 @@
 namespace remomask::tools {
 
 void run_describe(const DescribeCommand& command, Program& program) {
-  const retriever::Retriever retriever(nn::load_stage(command.files.model_path(), "retriever"));
-  const auto encoder = encoders::SentenceEncoder::open(text_file(command.files));
+  const retriever::Retriever retriever =
+      retriever::open_retriever(command.files.model_path(), text_file(command.files));
   db::Database database(command.files.database_path(), db::OpenMode::read_write);
   search::DescribeOptions options;
   options.min_probability = command.min_probability;
   options.captions = static_cast<size_t>(command.captions);
-  const search::Descriptions made = search::describe_clips(
-      database, retriever.hash(), encoder.hash(), command.clips, options, program.monitor());
+  const search::Descriptions made =
+      search::describe_clips(database, retriever.hash(), retriever.words()->hash(), command.clips,
+                             options, program.monitor());
   db::Transaction transaction(database);
   database.remove_guesses(command.clips);
   database.store_guesses(made.guesses);
