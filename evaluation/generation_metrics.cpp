@@ -1,8 +1,8 @@
 #include "evaluation/generation_metrics.h"
 
+#include <ATen/ops/linalg_eigh.h>
+#include <ATen/ops/linalg_eigvalsh.h>
 #include <torch/types.h>
-// After the types, which it does not include.
-#include <torch/linalg.h>
 #include <torch/utils.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ at::Tensor covariance(const at::Tensor& rows) {
 
 /// Of a symmetric matrix without negative eigenvalues but for rounding.
 at::Tensor symmetric_root(const at::Tensor& matrix) {
-  const auto [values, vectors] = torch::linalg::eigh(matrix, "L");
+  const auto [values, vectors] = at::linalg_eigh(matrix, "L");
   return vectors.matmul(torch::diag(values.clamp_min(0).sqrt())).matmul(vectors.t());
 }
 
@@ -104,7 +104,7 @@ double frechet_distance(const at::Tensor& mean_a, const at::Tensor& covariance_a
   // tr (A B)^(1/2) = sum of the roots of the eigenvalues of A^(1/2) B A^(1/2).
   const at::Tensor root = symmetric_root(covariance_a);
   const at::Tensor product = root.matmul(covariance_b).matmul(root);
-  const at::Tensor values = torch::linalg::eigvalsh((product + product.t()) / 2, "L");
+  const at::Tensor values = at::linalg_eigvalsh((product + product.t()) / 2, "L");
   const double cross = values.clamp_min(0).sqrt().sum().item<double>();
   const double distance = (mean_a - mean_b).square().sum().item<double>() +
                           covariance_a.trace().item<double>() +

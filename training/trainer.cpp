@@ -4,6 +4,7 @@
 #include <torch/nn/utils/clip_grad.h>
 #include <torch/optim/adamw.h>
 #include <torch/utils.h>
+#include <torch/version.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +18,19 @@
 #include "remomask/error.h"
 
 namespace remomask::training {
+
+namespace {
+
+/// The key of a parameter in the state of an optimizer: a text in libtorch 1, an address in 2.
+auto state_key(const at::Tensor& parameter) {
+#if TORCH_VERSION_MAJOR < 2
+  return c10::guts::to_string(parameter.unsafeGetTensorImpl());
+#else
+  return static_cast<void*>(parameter.unsafeGetTensorImpl());
+#endif
+}
+
+}  // namespace
 
 double scheduled_rate(const TrainerOptions& options, int64_t step) {
   if (step < options.warmup_steps) {
@@ -81,7 +95,7 @@ struct Trainer::Impl {
 
   torch::optim::AdamWParamState* moments(const at::Tensor& value) {
     auto& states = optimizer->state();
-    const auto found = states.find(c10::guts::to_string(value.unsafeGetTensorImpl()));
+    const auto found = states.find(state_key(value));
     return found == states.end() ? nullptr
                                  : static_cast<torch::optim::AdamWParamState*>(found->second.get());
   }
@@ -151,8 +165,7 @@ struct Trainer::Impl {
       state->step(need("count/").item<int64_t>());
       state->exp_avg(need("moment1/").to(parameter.value.device()));
       state->exp_avg_sq(need("moment2/").to(parameter.value.device()));
-      optimizer->state()[c10::guts::to_string(parameter.value.unsafeGetTensorImpl())] =
-          std::move(state);
+      optimizer->state()[state_key(parameter.value)] = std::move(state);
     }
     step = std::stoll(file.metadata["step"]);
     smooth_loss = parse_json(file.metadata["smooth_loss"]).get<double>();
