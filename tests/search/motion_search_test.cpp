@@ -14,7 +14,6 @@
 
 #include "motion/body_parts.h"
 #include "motion/features.h"
-#include "nn/model_file.h"
 #include "nn/tensor_values.h"
 #include "retriever/retriever.h"
 #include "search/calibration.h"
@@ -155,13 +154,13 @@ class MotionSearchTest : public ::testing::Test {
   }
 
   static TestFolder* folder_;
-  static retriever::Retriever* retriever_;
+  static std::shared_ptr<const retriever::Retriever>* retriever_;
   static db::Database* database_;
   static search::MotionSearch* search_;
 };
 
 TestFolder* MotionSearchTest::folder_ = nullptr;
-retriever::Retriever* MotionSearchTest::retriever_ = nullptr;
+std::shared_ptr<const retriever::Retriever>* MotionSearchTest::retriever_ = nullptr;
 db::Database* MotionSearchTest::database_ = nullptr;
 search::MotionSearch* MotionSearchTest::search_ = nullptr;
 
