@@ -7,6 +7,7 @@
 
 #include "pipeline/motion_generator.h"
 #include "remomask/error.h"
+#include "tests/encoders/tiny_words.h"
 #include "tests/tokenizer/tokenizer_test_tools.h"
 #include "training/model_training.h"
 

@@ -201,7 +201,7 @@ TEST(Draft, ADamagedGateIsAnError) {
                                     R"({"motion": )" + sound + "}"}) {
       auto stages = tiny_model().stages;
       stages.at("masked").config["evidence_gate"] = nlohmann::json::parse(gate);
-      EXPECT_THROW(pipeline::Generator{stages}, Error) << gate;
+      EXPECT_THROW(pipeline::Generator(stages, tiny_words()), Error) << gate;
     }
   }
 }

@@ -130,7 +130,7 @@ TEST(Pipeline, WrongInputsAreErrors) {
   hits[1].motion.pop_back();
   EXPECT_THROW(generator.generate("a man waves", hits), Error);
   stages.erase("residual");
-  EXPECT_THROW(pipeline::Generator{stages}, Error);
+  EXPECT_THROW(pipeline::Generator(stages, tiny_words()), Error);
 }
 
 TEST(Presets, SizesFitTogether) {

@@ -481,7 +481,7 @@ TEST_F(MotionSearchTest, StoredMotionsAndMomentsOfTheShippedDatabase) {
         database.motion(hit.clip.id), humanml_skeleton(), (*retriever_)->feature_mode());
     const auto windows = search::moment_windows(features.frames);
     const search::Moment best =
-        search::best_moments(text, windows, search::encode_moments(*retriever_, features, windows))
+        search::best_moments(text, windows, search::encode_moments(**retriever_, features, windows))
             .at(0);
     ASSERT_TRUE(hit.moment);
     EXPECT_DOUBLE_EQ(hit.moment->start, best.window.first / 20.0);

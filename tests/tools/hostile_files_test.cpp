@@ -19,14 +19,14 @@ constexpr uint64_t kGigabyte = uint64_t{1} << 30;
 class HostileFiles : public testing::Test {
  protected:
   std::string file(const std::string& name, const std::string& content) {
-    std::ofstream(scratch_.path(name), std::ios::binary) << content;
-    return scratch_.path(name);
+    std::ofstream(scratch_ / name, std::ios::binary) << content;
+    return scratch_ / name;
   }
   /// Zeros that take no room on the disk follow the content.
   std::string sparse(const std::string& name, const std::string& content, uint64_t bytes) {
     file(name, content);
-    fs::resize_file(scratch_.path(name), bytes);
-    return scratch_.path(name);
+    fs::resize_file(scratch_ / name, bytes);
+    return scratch_ / name;
   }
   static std::string repeated(const std::string& text, int count) {
     std::string all;
@@ -38,8 +38,8 @@ class HostileFiles : public testing::Test {
     return std::string(reinterpret_cast<const char*>(&length), sizeof length) + header;
   }
   std::string sound_motion(const std::string& name) {
-    fs::copy_file(REMOMASK_SOURCE_DIR "/tests/fuzz/corpus/npy/positions.npy", scratch_.path(name));
-    return scratch_.path(name);
+    fs::copy_file(REMOMASK_SOURCE_DIR "/tests/fuzz/corpus/npy/positions.npy", scratch_ / name);
+    return scratch_ / name;
   }
 
   /// `says`: part of the message.
@@ -50,7 +50,7 @@ class HostileFiles : public testing::Test {
     EXPECT_LT(run.peak_megabytes, 1000) << arguments.front() << " " << arguments.back();
   }
 
-  ScratchFolder scratch_;
+  TestFolder scratch_;
 };
 
 TEST_F(HostileFiles, HeadersOfMillionsOfValues) {
@@ -76,7 +76,7 @@ TEST_F(HostileFiles, TensorsThatNobodyAskedFor) {
 TEST_F(HostileFiles, TextsOfGigabytes) {
   expect_refused({"check", sparse("a.bvh", "HIERARCHY\n", kGigabyte - 1)}, "holds more than");
   const std::string motion = sound_motion("b.npy");
-  expect_refused({"convert", motion, scratch_.path("c.npy"), "--skeleton-map",
+  expect_refused({"convert", motion, scratch_ / "c.npy", "--skeleton-map",
                   sparse("map.json", "[", 2 * kGigabyte)},
                  "holds more than");
   sparse("b.npy.json", "{", 2 * kGigabyte);
@@ -84,25 +84,25 @@ TEST_F(HostileFiles, TextsOfGigabytes) {
   file("b.npy.json", "{\"a\":[" + repeated("[],", 20000000) + "[]]}");
   expect_refused({"check", motion}, "two million values");
   expect_refused({"generate", "--script", sparse("script.txt", "3 walk\n", kGigabyte), "-o",
-                  scratch_.path("d.npy")},
+                  scratch_ / "d.npy"},
                  "holds more than");
 }
 
 TEST_F(HostileFiles, PipesWithoutAWriter) {
   for (const char* name : {"a.bvh", "a.safetensors", "a.sqlite"}) {
-    ASSERT_EQ(::mkfifo(scratch_.path(name).c_str(), 0600), 0);
+    ASSERT_EQ(::mkfifo((scratch_ / name).c_str(), 0600), 0);
   }
-  expect_refused({"convert", scratch_.path("a.bvh"), scratch_.path("c.npy")}, "is a pipe");
-  expect_refused({"check", scratch_.path("a.safetensors")}, "is not a regular file");
-  expect_refused({"info", scratch_.path("a.safetensors")}, "cannot open");
-  expect_refused({"db", "list", scratch_.path("a.sqlite")}, "is not a regular file");
+  expect_refused({"convert", scratch_ / "a.bvh", scratch_ / "c.npy"}, "is a pipe");
+  expect_refused({"check", scratch_ / "a.safetensors"}, "is not a regular file");
+  expect_refused({"info", scratch_ / "a.safetensors"}, "cannot open");
+  expect_refused({"db", "list", scratch_ / "a.sqlite"}, "is not a regular file");
 }
 
 TEST_F(HostileFiles, DatabasesOfHoles) {
   expect_refused({"check", sparse("a.sqlite", "SQLite format 3", 2 * kGigabyte)}, "a.sqlite");
-  run_json({"procedural", "--db", scratch_.path("b.sqlite"), "--count", "2"});
-  fs::resize_file(scratch_.path("b.sqlite"), 2 * kGigabyte);
-  const ProgramResult check = run_program({"check", scratch_.path("b.sqlite")});
+  run_json({"procedural", "--db", scratch_ / "b.sqlite", "--count", "2"});
+  fs::resize_file(scratch_ / "b.sqlite", 2 * kGigabyte);
+  const ProgramResult check = run_program({"check", scratch_ / "b.sqlite"});
   EXPECT_LT(check.peak_megabytes, 1000);
 }
 

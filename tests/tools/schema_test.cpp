@@ -147,8 +147,8 @@ TEST(Schema, DescribesErrors) {
 }
 
 TEST(Schema, DescribesGuesses) {
-  const ScratchFolder folder;
-  const std::string database = folder.path("motions.sqlite");
+  const TestFolder folder;
+  const std::string database = folder / "motions.sqlite";
   std::filesystem::copy_file(std::string(REMOMASK_SOURCE_DIR) + "/models/motions.sqlite", database);
   std::filesystem::permissions(database, std::filesystem::perms::owner_write,
                                std::filesystem::perm_options::add);

@@ -110,8 +110,8 @@ TEST(SearchCommand, SaysWhichLanguageItDoesNotUnderstand) {
 }
 
 TEST(SearchCommand, FindsWhatWasGuessedAndSaysSo) {
-  const ScratchFolder scratch;
-  const std::string database = scratch.path("motions.sqlite"), wave = scratch.path("unnamed.bvh");
+  const TestFolder scratch;
+  const std::string database = scratch / "motions.sqlite", wave = scratch / "unnamed.bvh";
   std::filesystem::copy_file(std::string(REMOMASK_SOURCE_DIR) + "/models/motions.sqlite", database);
   std::filesystem::permissions(database, std::filesystem::perms::owner_write,
                                std::filesystem::perm_options::add);

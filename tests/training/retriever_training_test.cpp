@@ -8,6 +8,7 @@
 
 #include "evaluation/retrieval_metrics.h"
 #include "remomask/error.h"
+#include "retriever/retriever_model.h"
 #include "tests/encoders/tiny_words.h"
 #include "tests/retriever/retriever_test_tools.h"
 #include "training/training_batches.h"
