@@ -26,8 +26,8 @@ namespace {
 constexpr int kQueries = 200;
 
 struct Searched {
-  retriever::Retriever retriever{
-      nn::load_model(file_named("REMOMASK_MODEL", "base.safetensors")).at("retriever")};
+  retriever::Retriever retriever =
+      retriever::open_retriever(file_named("REMOMASK_MODEL", "base.safetensors"));
   db::Database database{file_named("REMOMASK_DATABASE", "motions.sqlite"), db::OpenMode::read_only};
   std::shared_ptr<const search::SearchState> state = std::make_shared<search::SearchState>(
       index::VectorIndex::open(index::default_index_path(database.path()), database,
