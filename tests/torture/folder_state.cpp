@@ -15,6 +15,7 @@
 #include "formats/sidecar.h"
 #include "index/index_file.h"
 #include "remomask/error.h"
+#include "remomask/motion_file.h"
 
 namespace remomask {
 
@@ -71,6 +72,11 @@ std::string index_state(const std::string& path) {
   return ids;
 }
 
+/// The library that writes FBX notes the time in the file.
+std::string fbx_state(const std::string& path) {
+  return hash_of(load_motion(path).motion.positions);
+}
+
 /// What SQLite keeps beside a database that is open.
 bool is_log(const std::string& name) {
   return name.ends_with(".sqlite-wal") || name.ends_with(".sqlite-shm");
@@ -94,6 +100,7 @@ std::string state_of(const std::string& folder) {
     lines.insert(name + ": " +
                  (name.ends_with(".sqlite")  ? database_state(path)
                   : name.ends_with(".index") ? index_state(path)
+                  : name.ends_with(".fbx")   ? fbx_state(path)
                                              : content_hash(read_file(path))));
   });
   std::string state;
