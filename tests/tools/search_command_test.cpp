@@ -90,7 +90,7 @@ TEST(SearchCommand, RefusesBadQueriesClearly) {
       {{"search", "--", "-walk -run"}, "not wanted"},
       {{"search", "walk", "--boost-words", "slow"}, "--by motion"},
       {{"search", "walk", "--by", "motion", "--boost-words", "..."}, "no word"},
-      {{"search", "walk", "--min-probability", "2"}, "no probability"},
+      {{"search", "walk", "--min-probability", "2"}, "not a probability"},
       {{"search", "walk", "--by", "motion", "--min-probability", "0.5"}, "evaluate calibration"},
       {{"search", "--like-clip", kStored, "--parts", "arms", "--moments"}, "whole body"},
   };
