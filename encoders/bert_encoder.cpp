@@ -280,8 +280,7 @@ TokenBatch BertEncoder::batch(const std::vector<const text::BertTokens*>& texts)
 TokenBatch BertEncoder::tokenize(const std::vector<std::string>& captions) const {
   std::vector<text::BertTokens> read_texts;
   for (const std::string& caption : captions) {
-    text::normalise_prompt(caption);  // refuses an empty one
-    read_texts.push_back(read(caption));
+    read_texts.push_back(read(text::normalise_prompt(caption)));
   }
   std::vector<const text::BertTokens*> texts;
   for (const text::BertTokens& text : read_texts) texts.push_back(&text);

@@ -37,7 +37,7 @@ class TextTower : public torch::nn::Module {
   virtual at::Tensor encode_below(const at::Tensor& ids, const at::Tensor& mask,
                                   int64_t left_out) const = 0;
   virtual std::shared_ptr<TextTail> tail(int64_t layers) const = 0;
-  /// Captions of any form; throws Error for an empty one.
+  /// Captions, read in their canonical form; throws Error for an empty one.
   virtual TokenBatch tokenize(const std::vector<std::string>& captions) const = 0;
   /// Id that stands for a hidden token, for masking in training.
   virtual int64_t mask_id() const = 0;

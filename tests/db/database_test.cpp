@@ -249,7 +249,7 @@ TEST(Database, OtherProgramsAndNewerVersionsAreRefused) {
             }).find("is not a motion database"),
             std::string::npos);
   { db::Database database(folder / "new", db::OpenMode::create); }
-  run_sql(folder / "new", "PRAGMA user_version = 7");
+  run_sql(folder / "new", "PRAGMA user_version = 8");
   EXPECT_NE(error_of([&] {
               db::Database(folder / "new", db::OpenMode::read_only);
             }).find("newer version"),

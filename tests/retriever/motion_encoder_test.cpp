@@ -150,9 +150,6 @@ TEST(MotionEncoder, OneEncoderHasAboutAsManyWeightsAsSix) {
     EXPECT_NEAR(weights(config) / six, 1, 0.2) << size_name(size);
     EXPECT_EQ(nlohmann::json(config).get<retriever::RetrieverConfig>().encoders, 1);
   }
-  nlohmann::json old_file = retriever::retriever_preset(ModelSize::base);
-  old_file.erase("encoders");
-  EXPECT_EQ(retriever::read_retriever_config(old_file).encoders, 6);
 }
 
 TEST(MotionEncoder, KitHasItsOwnParts) {

@@ -282,7 +282,7 @@ TEST_F(DbCommandsTest, SnapshotRestoreUpgrade) {
   EXPECT_EQ(count({}), 11u);
   run_json({"db", "restore", copy, database_, "--force"});
   EXPECT_EQ(count({}), 12u);
-  EXPECT_EQ(run_json({"db", "upgrade", database_})["version"], 5);
+  EXPECT_EQ(run_json({"db", "upgrade", database_})["version"], 7);
 }
 
 }  // namespace

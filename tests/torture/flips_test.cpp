@@ -127,8 +127,8 @@ TEST_F(Flips, OfAModel) {
 
 TEST_F(Flips, OfATextFile) {
   SharedFolder::instance().run({"import-text", REMOMASK_SOURCE_DIR "/tests/fuzz/corpus/encoder",
-                                "-o", "%/text.safetensors"});
-  try_flips("text.safetensors", "text.safetensors", {}, {});
+                                "-o", "%/imported.safetensors"});
+  try_flips("imported.safetensors", "imported.safetensors", {}, {});
 }
 
 TEST_F(Flips, OfACheckpoint) {

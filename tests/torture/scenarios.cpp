@@ -90,7 +90,7 @@ std::vector<Scenario> all_scenarios() {
        with_model({"edit", "%/first.npy", "--prompt", "a person waves", "--span", "0.5-1",
                    "--sheet", "@/edit.png", "-o", "@/edited.npy", "--force"}),
        /*generates=*/true},
-      trained("train_text", "text"),
+      trained("train_retriever", "retriever"),
       trained("train_tokenizer", "tokenizer"),
       trained("train_all", "all"),
       trained("train_evaluator", "evaluator"),
