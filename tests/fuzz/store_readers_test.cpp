@@ -117,7 +117,9 @@ TEST_F(StoreReaderFuzz, Index) {
   const db::Database database(folder_ / "d", db::OpenMode::read_only);
   std::vector<std::string> seeds;
   for (const char* factory : {"Flat", "IVF2,Flat", "HNSW4"}) {
-    const index::UpdateOptions options{.type = index::VectorIndexOptions{.factory = factory}};
+    index::UpdateOptions options;
+    options.type = index::VectorIndexOptions{};
+    options.type->factory = factory;
     index::update_index(folder_ / factory, database, "r", options);
     seeds.push_back(taken_apart(read_file(folder_ / factory), "RMMINDEX"));
   }

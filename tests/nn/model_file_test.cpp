@@ -105,7 +105,8 @@ TEST_F(ModelFileTest, EveryFlippedBitIsNoticed) {
     flipped[i / 8] = static_cast<char>(flipped[i / 8] ^ (1 << (i % 8)));
     write_file_atomically(path_, flipped, Durability::kills);
     EXPECT_THROW(nn::check_safetensors(path_), FileError) << "byte " << i / 8;
-    if (i % 8 == i / 8 % 8) EXPECT_THROW(nn::load_model(path_), FileError) << "byte " << i / 8;
+    if (i % 8 != i / 8 % 8) continue;
+    EXPECT_THROW(nn::load_model(path_), FileError) << "byte " << i / 8;
   }
   write_file_atomically(path_, good + std::string(8, '\0'));
   EXPECT_THROW(nn::load_model(path_), FileError);
