@@ -62,7 +62,7 @@ TEST(OldFormats, AllAreUpgradedWhenTheyAreWritten) {
 TEST(OldFormats, ANewerVersionIsRefused) {
   const TestFolder folder;
   const std::string path = old_database(folder, 2);
-  run_sql(path, "PRAGMA user_version = 7");
+  run_sql(path, "PRAGMA user_version = 8");
   for (const auto mode : {db::OpenMode::read_only, db::OpenMode::read_write}) {
     EXPECT_NE(error_of([&] { db::Database(path, mode); }).find("newer version of remomask"),
               std::string::npos);

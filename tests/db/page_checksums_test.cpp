@@ -138,7 +138,7 @@ TEST_F(PageChecksumsTest, OldFilesGetThemByAnUpgrade) {
     }
     EXPECT_FALSE(has_them());
     EXPECT_FALSE(db::check_database(path).has_checksums);
-    EXPECT_EQ(db::upgrade_database(path).version, 6);
+    EXPECT_EQ(db::upgrade_database(path).version, 7);
     EXPECT_TRUE(has_them());
     EXPECT_TRUE(db::check_database(path).has_checksums);
     EXPECT_EQ(defects_of(path), std::vector<std::string>());

@@ -64,8 +64,9 @@ TEST(FaissLayout, HnswIsWalkedThroughItsGraph) {
     faiss::IndexHNSWFlat copy(inner);
     copy.own_fields = false;
     damage(copy.hnsw);
+    copy.ntotal = 0;  // as it must be when the map is made
     faiss::IndexIDMap2 index(&copy);
-    index.ntotal = kLayoutCount;
+    copy.ntotal = index.ntotal = kLayoutCount;
     index.id_map.assign(kLayoutCount, 1);
     return !index::fits_layout(serialised(index), {kLayoutCount, kLayoutWidth}, true);
   };

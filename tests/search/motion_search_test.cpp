@@ -418,7 +418,7 @@ TEST_F(MotionSearchTest, ProbabilitiesAreThoseOfTheStoredCalibration) {
   ASSERT_EQ(limited.hits.size(), 2u);
   EXPECT_EQ(limited.refused->clip.name, answer.hits[2].clip.name);
   query.min_probability = 1.5;
-  EXPECT_NE(error_of([&] { search.search(query); }).find("no probability"), std::string::npos);
+  EXPECT_NE(error_of([&] { search.search(query); }).find("not a probability"), std::string::npos);
 
   SearchQuery like;
   like.like_clip = "a";
