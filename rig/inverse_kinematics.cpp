@@ -45,6 +45,8 @@ LimbFrame limb_frame(const Limb& limb, const Pose& pose, const Quat& carrier) {
   const Vec3 foot = (pose[limb.foot] - pose[limb.end]).normalized();
   const Vec3 across = foot.cross(lower);
   const double shown = smooth_step(0.2, 0.7, across.norm());
+  // Knees that bend backwards, as in motions that are no capture, must not turn the foot over.
+  if (shown > 0 && frame.hinge.dot(across) < 0) frame.hinge = -frame.hinge;
   if (shown > 0) frame.hinge += (1 - bent) * shown * across.normalized();
   frame.certainty = std::max(bent, 0.5 * shown);
   return frame;

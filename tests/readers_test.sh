@@ -51,9 +51,9 @@ for sentence in "a person walks forward and turns around" "a person sits down on
   number=$((number + 1))
   made="generated$number"
   for file in $made.npy $made.bvh $made.glb $made.vrma; do
-    "$program" --quiet generate "$sentence" --seconds 4 --seed 3 -o "$file" >/dev/null
+    "$program" --quiet generate "$sentence" --seconds 4 --seed 1 -o "$file" >/dev/null
   done
-  "$program" --quiet generate "$sentence" --seconds 4 --seed 3 -o "$made.m.bvh" --units m >/dev/null
+  "$program" --quiet generate "$sentence" --seconds 4 --seed 1 -o "$made.m.bvh" --units m >/dev/null
   centimetres=("$made.npy" 0.01 "$made.bvh" "$made.glb" "$made.vrma")
   metres=("$made.npy" 1 "$made.m.bvh")
   try node "$cache/scripts/stands_node.mjs" "${centimetres[@]}"

@@ -194,6 +194,22 @@ TEST(Rotations, ABentElbowTurnsAboutItsHinge) {
   EXPECT_GT(std::abs(axis.y()), 0.97);
 }
 
+TEST(Rotations, AKneeThatBendsBackwardsLeavesTheFootOnItsSole) {
+  Motion motion = make_walker(1);
+  const auto place = [&](int joint, int parent, const Vec3& direction) {
+    const double length = humanml_skeleton().bone_lengths[static_cast<size_t>(joint)];
+    set_joint_position(motion, 0, joint,
+                       joint_position(motion, 0, parent) + length * direction.normalized());
+  };
+  for (const double bend : {-0.3, -0.1, 0.1, 0.3}) {
+    place(4, 1, Vec3(0, -1, bend));
+    place(7, 4, Vec3(0, -1, -bend));
+    place(10, 7, Vec3(0, -0.4, 1));
+    const rig::WorldPose world = rig::world_pose(solve_rotations(motion), 0);
+    EXPECT_GT((world.rotations[7] * Vec3::UnitX()).x(), 0.9) << bend;
+  }
+}
+
 TEST(Rotations, TheTipsOfTheToesStayAboveTheFloor) {
   Motion motion = make_walker(1);
   // The left foot stands on its ball.
