@@ -217,6 +217,9 @@ void MotionFolder::match_captions() {
     const CaptionEntry* entry = captions_.find(files_[i].key);
     if (!entry) entry = captions_.find(path_without_extension(files_[i].name));
     if (!entry) entry = captions_.find(files_[i].name);
+    const fs::path path(files_[i].name);
+    const bool alone = files_[i].key == path.stem();  // no other file has this stem
+    if (!entry && alone) entry = captions_.find(path.filename().string());
     described_.push_back(entry);
     if (entry) {
       used.insert(entry);

@@ -74,13 +74,13 @@ TEST(ImportCaptions, OtherSpellingsMeanTheSame) {
   const exchange::ImportOptions options = make_walks(folder, 2, ".npy");
   // Lines that end with CR, one caption without a list, file names, and Windows-1252.
   write_file_atomically(folder / "walks.jsonl",
-                        "{\"clip\": \"walk_1001.npy\", \"captions\": \"to the caf\xE9\"}\r"
-                        "{\"clip\": \"walk_1000\", \"captions\": [\"b\"]}\r");
+                        "{\"clip\": \"walk_1000.npy\", \"captions\": \"to the caf\xE9\"}\r"
+                        "{\"clip\": \"walk_1001\", \"captions\": [\"b\"]}\r");
   db::Database database(folder / "d", db::OpenMode::create);
   EXPECT_TRUE(exchange::import_folder(database, options).warnings.empty());
-  EXPECT_EQ(database.clip(*database.find_name("walk_1001")).captions,
-            std::vector<std::string>{"to the caf\xC3\xA9"});
   EXPECT_EQ(database.clip(*database.find_name("walk_1000")).captions,
+            std::vector<std::string>{"to the caf\xC3\xA9"});
+  EXPECT_EQ(database.clip(*database.find_name("walk_1001")).captions,
             std::vector<std::string>{"b"});
 }
 
