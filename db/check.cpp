@@ -81,10 +81,13 @@ class Checker {
   }
 
   void check_pages() {
-    for (const int64_t page : damaged_pages(connection_.handle())) {
+    const std::vector<int64_t> damaged = damaged_pages(connection_.handle());
+    for (const int64_t page : damaged) {
       add(0,
           fmt::format("page {} of the file is damaged (its checksum differs); {}", page, kRestore));
     }
+    // The rest of the check reads them as they are: it may find out which clips they belong to.
+    if (!damaged.empty()) ignore_page_checksums(connection_.handle());
     SqliteStatement rows(connection_, "PRAGMA integrity_check");
     while (rows.step()) {
       if (rows.text(0) != "ok") add(0, "SQLite's check says: " + rows.text(0) + "; " + kRestore);

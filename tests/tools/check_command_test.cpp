@@ -46,6 +46,7 @@ TEST_F(CheckCommandTest, NamesEveryDamagedFileAndFails) {
   const ProgramResult result = run_program({"check", database_, database_ + ".index", absent});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find(database_ + ": page "), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(database_ + ": clip "), std::string::npos) << result.output;
   EXPECT_NE(result.output.find(database_ + ".index: "), std::string::npos) << result.output;
   EXPECT_NE(result.output.find(absent + ": there is no such file"), std::string::npos);
   EXPECT_NE(result.errors.find("3 of 3 files damaged"), std::string::npos) << result.errors;
